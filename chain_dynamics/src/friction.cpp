@@ -73,14 +73,5 @@ void frictionVector(const std::vector<FrictionLaw>& laws,
   }
 }
 
-void frictionSlopes(const std::vector<FrictionLaw>& laws,
-                    const Eigen::Ref<const Eigen::VectorXd>& qd,
-                    const Eigen::Ref<const Eigen::VectorXd>& g, Eigen::Ref<Eigen::VectorXd> slope) {
-  assert(static_cast<Eigen::Index>(laws.size()) == qd.size() && slope.size() == qd.size());
-  for (Eigen::Index j = 0; j < slope.size(); ++j) {
-    slope[j] = frictionSlope(laws[static_cast<std::size_t>(j)], qd[j], loadAt(g, j));
-  }
-}
-
 }  // namespace v2
 }  // namespace chain_dynamics

@@ -181,15 +181,6 @@ void frictionVector(const Model& model, const ConstVectorRef& q, const ConstVect
   }
 }
 
-void frictionSlopes(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
-                    VectorRef slope) {
-  if (model.friction.empty()) {
-    slope = 0.0 * qd;  // keeps a NaN
-  } else {
-    frictionSlopes(model.friction, qd, Load(model, q).g, slope);
-  }
-}
-
 void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                             MatrixRef dtau_dq, MatrixRef dtau_dqd) {
   if (model.friction.empty()) return;

@@ -6,12 +6,10 @@
 
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "chain_dynamics/coriolis_vector.hpp"
 #include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/inertia_matrix.hpp"
-#include "chain_dynamics/parameter_sets.hpp"
 #include "example_robots.hpp"
 #include "lagrange.hpp"
 #include "random_chains.hpp"
@@ -42,20 +40,6 @@ MatrixX<double> rateOfInertia(const Chain& chain, const VectorX<double>& q,
   return rates(H);
 }
 
-// Half the derivative of C qd, which is what Christoffel's symbols are.
-template <typename Vector>
-MatrixX<double> halfDerivative(const State<double>& state, const Vector& coriolis_vector) {
-  const Eigen::Index n = state.q.size();
-  const VectorX<Dual<double, 1>> q = state.q.cast<Dual<double, 1>>();
-  MatrixX<double> C(n, n);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    MatrixX<Dual<double, 1>> c(n, 1);
-    coriolis_vector(q, variable(state.qd, j), c.col(0));
-    C.col(j) = 0.5 * rates(c);
-  }
-  return C;
-}
-
 // The size of the terms that C is the sum of, cancelling or not.
 double termsOf(const Chain& chain, const State<double>& state, const MatrixX<double>& C) {
   return largest(C) + largest(rateOfInertia(chain, state.q, state.qd));
@@ -83,15 +67,6 @@ TEST(CoriolisMatrix, OfATurntableWithASlideByHand) {
       expected, 1, kByHand));
 }
 
-TEST(CoriolisMatrix, IsThatOfChristoffelsSymbols) {
-  forEachState([](const Chain& chain, const State<double>& state) {
-    const MatrixX<double> C = coriolisMatrixOf(chain, state.q, state.qd);
-    const MatrixX<double> expected = halfDerivative(
-        state, [&](const auto& q, const auto& qd, auto c) { coriolisVector(chain, q, qd, c); });
-    EXPECT_TRUE(agree(C, expected, termsOf(chain, state, C), rounding(chain)));
-  });
-}
-
 TEST(CoriolisMatrix, TimesVelocityIsTheCoriolisVector) {
   forEachState([](const Chain& chain, const State<double>& state) {
     const MatrixX<double> C = coriolisMatrixOf(chain, state.q, state.qd);
@@ -108,21 +83,6 @@ TEST(CoriolisMatrix, AndItsTransposeAreTheRateOfInertia) {
     const MatrixX<double> C = coriolisMatrixOf(chain, state.q, state.qd);
     EXPECT_TRUE(agree((C + C.transpose()).eval(), rateOfInertia(chain, state.q, state.qd),
                       termsOf(chain, state, C), rounding(chain)));
-  });
-}
-
-TEST(CoriolisMatrix, OfParameterSetsAreThatOfTheirCoriolisVector) {
-  forEachState([](const Chain& chain, const State<double>& state) {
-    if (chain.jointCount() > 9) return;
-    const auto rows = randomIdentifiedRows(chain);
-    const std::vector<LinkParameters> gravity = chain.links();
-    const ParameterSets sets{rows, gravity};
-    MatrixX<double> C(chain.jointCount(), chain.jointCount());
-    coriolisMatrix(chain, sets, state.q, state.qd, C);
-    const MatrixX<double> expected = halfDerivative(
-        state,
-        [&](const auto& q, const auto& qd, auto c) { coriolisVector(chain, sets, q, qd, c); });
-    EXPECT_TRUE(agree(C, expected, largest(C) + 1, rounding(chain)));
   });
 }
 

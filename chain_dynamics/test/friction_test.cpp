@@ -240,18 +240,6 @@ TEST(FrictionSlope, IsFiniteForAnyFiniteVelocityAndNanForNan) {
 
 const auto kJoints = static_cast<Eigen::Index>(kAllLaws.size());
 
-TEST(FrictionSlopes, EachJointHasItsOwnLaw) {
-  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(kJoints, -1.0, 2.0);
-  const Eigen::VectorXd g = Eigen::VectorXd::LinSpaced(kJoints, 30.0, -50.0);
-  Eigen::VectorXd slope = Eigen::VectorXd::Constant(kJoints, kNaN);
-  frictionSlopes(kAllLaws, qd, g, slope);
-  for (Eigen::Index j = 0; j < kJoints; ++j) {
-    // but for what a compiler contracts in one place and not in another
-    EXPECT_DOUBLE_EQ(slope[j], frictionSlope(kAllLaws[static_cast<std::size_t>(j)], qd[j], g[j]))
-        << j;
-  }
-}
-
 TEST(FrictionVector, EachJointHasItsOwnLaw) {
   const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(kJoints, -1.0, 2.0);
   const Eigen::VectorXd g = Eigen::VectorXd::LinSpaced(kJoints, 30.0, -50.0);

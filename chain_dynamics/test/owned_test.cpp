@@ -42,15 +42,6 @@ TEST(Owned, TakesTheSizeOfWhatIsAssigned) {
   EXPECT_EQ(without_rows.cols(), 0);
 }
 
-TEST(Owned, KeepsItsNumbersWhenColumnsAreAddedOrTaken) {
-  OwnedMatrix numbers = Eigen::MatrixXd::Identity(2, 2);
-  numbers.conservativeResize(Eigen::NoChange, 1000);
-  EXPECT_EQ(numbers.cols(), 1000);
-  EXPECT_EQ(numbers.leftCols(2), Eigen::MatrixXd::Identity(2, 2));
-  numbers.conservativeResize(Eigen::NoChange, 1);
-  EXPECT_EQ(numbers, Eigen::MatrixXd(Eigen::Vector2d(1.0, 0.0)));
-}
-
 TEST(Owned, CopiesAreIndependentAndMovesTakeTheMemory) {
   OwnedVector first = kValues;
   OwnedVector copy = first;

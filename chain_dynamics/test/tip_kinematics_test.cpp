@@ -117,18 +117,6 @@ TEST(TipKinematics, JacobianIsTheDerivativeOfThePose) {
   });
 }
 
-TEST(TipKinematics, JacobianDerivativeIsThatOfTheJacobian) {
-  forEachState([](const Chain& without, const State<double>& state) {
-    const Chain chain = withTip(without);
-    const Jacobian<Dual<double, 1>> moved = jacobianOf(chain, moving<double>(state.q, state.qd));
-    const Jacobian<double> expected =
-        moved.unaryExpr([](const Dual<double, 1>& x) { return x.derivative[0]; });
-    const double scale = lengthOf(chain, state) * (1 + state.qd.cwiseAbs().sum());
-    EXPECT_TRUE(
-        agree(jacobianDerivativeOf(chain, state.q, state.qd), expected, scale, rounding(chain)));
-  });
-}
-
 TEST(TipKinematics, TheRotationIsOne) {
   forEachState([](const Chain& without, const State<double>& state) {
     const Chain chain = withTip(without);

@@ -6,13 +6,8 @@
 
 #include <cmath>
 #include <limits>
-#include <vector>
 
-#include "chain_dynamics/dual.hpp"
-#include "chain_dynamics/parameter_sets.hpp"
-#include "chain_dynamics/torques.hpp"
 #include "example_robots.hpp"
-#include "lagrange.hpp"
 #include "random_chains.hpp"
 
 namespace chain_dynamics {
@@ -33,38 +28,6 @@ Derivatives derivativesOf(const Chain& chain, const State<double>& x) {
   Derivatives d(chain.jointCount());
   torqueDerivatives(chain, x.q, x.qd, x.qdd, d.q, d.qd, d.qdd);
   return d;
-}
-
-Derivatives derivativesOf(const Chain& chain, const ParameterSets& sets, const State<double>& x) {
-  Derivatives d(chain.jointCount());
-  torqueDerivatives(chain, sets, x.q, x.qd, x.qdd, d.q, d.qd, d.qdd);
-  return d;
-}
-
-// The same from the torques of dual numbers, one direction after the other.
-template <typename Torques>
-Derivatives byDualNumbers(const State<double>& x, const Torques& torques_of) {
-  const Eigen::Index n = x.q.size();
-  const auto constants = x.cast<Dual<double, 1>>();
-  const auto derivative = [&](const State<Dual<double, 1>>& varied) {
-    VectorX<Dual<double, 1>> tau(n);
-    torques_of(varied, tau);
-    return tau.unaryExpr([](const auto& t) { return t.derivative[0]; }).eval();
-  };
-  Derivatives d(n);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    d.q.col(j) = derivative({variable(x.q, j), constants.qd, constants.qdd});
-    d.qd.col(j) = derivative({constants.q, variable(x.qd, j), constants.qdd});
-    d.qdd.col(j) = derivative({constants.q, constants.qd, variable(x.qdd, j)});
-  }
-  return d;
-}
-
-void expectSame(const Chain& chain, const Derivatives& a, const Derivatives& b) {
-  const double tolerance = rounding(chain);
-  EXPECT_TRUE(agree(a.q, b.q, largest(b.q), tolerance)) << "by q";
-  EXPECT_TRUE(agree(a.qd, b.qd, largest(b.qd), tolerance)) << "by qd";
-  EXPECT_TRUE(agree(a.qdd, b.qdd, largest(b.qdd), tolerance)) << "by qdd";
 }
 
 // tau = (m l^2 + J) qdd + m g l cos q
@@ -95,46 +58,6 @@ TEST(TorqueDerivatives, OfATurntableByHand) {
   EXPECT_TRUE(agree(d.q, expected.q, 10, kByHand));
   EXPECT_TRUE(agree(d.qd, expected.qd, 10, kByHand));
   EXPECT_TRUE(agree(d.qdd, expected.qdd, 10, kByHand));
-}
-
-TEST(TorqueDerivatives, AreThoseOfDualNumbers) {
-  forEachState([](const Chain& chain, const State<double>& x) {
-    expectSame(chain, derivativesOf(chain, x), byDualNumbers(x, [&](const auto& varied, auto& tau) {
-                 torques(chain, varied.q, varied.qd, varied.qdd, tau);
-               }));
-  });
-}
-
-TEST(TorqueDerivatives, HoldAtLargeAngles) {
-  const Chain chain = randomChain(6);
-  for (const double angle : {1e4, -1e7}) {
-    State<double> x = randomState(chain, 2);
-    x.q[0] = x.q[3] = angle;
-    expectSame(chain, derivativesOf(chain, x), byDualNumbers(x, [&](const auto& varied, auto& tau) {
-                 torques(chain, varied.q, varied.qd, varied.qdd, tau);
-               }));
-  }
-}
-
-TEST(TorqueDerivatives, OfParameterSetsAreThoseOfDualNumbers) {
-  forEachState([](const Chain& chain, const State<double>& x) {
-    if (chain.jointCount() > 9) return;
-    Random random(7);
-    std::vector<std::vector<LinkParameters>> rows;
-    for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
-      rows.push_back(randomIdentifiedLinks(random, chain));
-    }
-    const std::vector<LinkParameters> gravity = randomIdentifiedLinks(random, chain);
-    for (const auto& own_rows : {decltype(rows)(), rows}) {
-      for (const auto& own_gravity : {std::vector<LinkParameters>(), gravity}) {
-        const ParameterSets sets{own_rows, own_gravity};
-        expectSame(chain, derivativesOf(chain, sets, x),
-                   byDualNumbers(x, [&](const auto& varied, auto& tau) {
-                     torques(chain, sets, varied.q, varied.qd, varied.qdd, tau);
-                   }));
-      }
-    }
-  });
 }
 
 }  // namespace

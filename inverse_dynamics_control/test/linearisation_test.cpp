@@ -4,7 +4,7 @@
 // error is the solution of edd + Kd ed + Kp e = 0.
 #include <gtest/gtest.h>
 
-#include <chain_dynamics/forward_dynamics.hpp>
+#include <chain_dynamics/fast_model.hpp>
 #include <cmath>
 
 #include "arms.hpp"
@@ -28,13 +28,14 @@ Reference referenceAt(double t) {
 class ClosedLoop {
  public:
   explicit ClosedLoop(const Gains& gains)
-      : chain_(twoBars()), law_(ChainSolver::make(chain_), gains, unlimited(2)) {}
+      : arm_(chain_dynamics::Model(twoBars())),
+        law_(ChainSolver::make(twoBars()), gains, unlimited(2)) {}
 
   Eigen::Vector4d rate(double t, const Eigen::Vector4d& x) {
     Eigen::VectorXd tau(2), qdd(2);
     const JointState state = stateOf(x.head<2>(), x.tail<2>());
     EXPECT_EQ(law_.update(state, referenceAt(t), kStep, tau), Status::kOk);
-    chain_dynamics::forwardDynamics(chain_, state.q, state.qd, tau, qdd);
+    arm_.forwardDynamics(state.q.data(), state.qd.data(), tau.data(), qdd.data());
     Eigen::Vector4d result;
     result << state.qd, qdd;
     return result;
@@ -48,7 +49,7 @@ class ClosedLoop {
   }
 
  private:
-  chain_dynamics::Chain chain_;
+  chain_dynamics::FastModel arm_;
   ComputedTorque law_;
 };
 

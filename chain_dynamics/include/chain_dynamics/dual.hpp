@@ -56,6 +56,8 @@
 #include <ostream>
 #include <type_traits>
 
+#include "chain_dynamics/scratch.hpp"
+
 namespace chain_dynamics {
 inline namespace v2 {
 
@@ -153,6 +155,26 @@ struct Dual {
     return stream << "] e";
   }
 };
+
+/// Derivatives of a function of vectors, exact, one direction after the other: `J_ij = dy_i / dx_j`.
+///
+/// @param compute  compute(x, y): y of x, vectors of dual numbers, as long as J has columns and rows.
+/// @param[out] J   rows by size of x.
+template <typename X, typename Compute, typename MatrixJ>
+void differentiate(const Eigen::MatrixBase<X>& x, const Compute& compute,
+                   const Eigen::MatrixBase<MatrixJ>& J) {
+  using Number = Dual<typename X::Scalar, 1>;
+  using Vector = Eigen::Map<Eigen::Matrix<Number, Eigen::Dynamic, 1>>;
+  Scratch<Number> x_memory(J.cols()), y_memory(J.rows());
+  Vector varied(&x_memory[0], J.cols()), y(&y_memory[0], J.rows());
+  for (Eigen::Index j = 0; j < J.cols(); ++j) varied[j] = x[j];
+  for (Eigen::Index j = 0; j < J.cols(); ++j) {
+    varied[j] = Number::variable(x[j], 0);
+    compute(varied, y);
+    varied[j] = x[j];
+    for (Eigen::Index i = 0; i < J.rows(); ++i) J.const_cast_derived()(i, j) = y[i].derivative[0];
+  }
+}
 
 }  // namespace v2
 }  // namespace chain_dynamics

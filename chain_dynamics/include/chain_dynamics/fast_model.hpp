@@ -93,10 +93,10 @@ class FastModel {
                          double* c, double* g) const;
   /// `qdd` of given torques, friction taken off: the inverse of torques().
   ///
-  /// H and the rest, then their equations; a long chain with one set of parameters by the recursion
-  /// of forward_dynamics.hpp. What that header says of an H that isn't physical holds here: the
-  /// result solves the equations (with row parameters too, by elimination), but describes no
-  /// motion of a robot. Infinity or NaN where H is singular.
+  /// Solves the equation of motion by `H = L' D L` [Featherstone 2008, sec. 6.5], with row parameters
+  /// by elimination. Where no rigid bodies have the parameters [Chain::warnings()], the result still
+  /// solves the equation, but describes no motion of a robot. A joint that moves neither mass nor rotor
+  /// inertia (H singular) gives infinity or NaN, no error.
   void forwardDynamics(const double* q, const double* qd, const double* tau, double* qdd) const;
   /// `Y(q, qd, qdd)` of regressor.hpp, n x 10 n: of rigid bodies, whatever parameters and friction
   /// the model has. Entry (i, j) at Y[i + j * outer_step].

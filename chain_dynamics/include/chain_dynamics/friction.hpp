@@ -28,6 +28,7 @@
 #include <variant>
 #include <vector>
 
+#include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/friction_laws/centered_sigmoid.hpp"
 #include "chain_dynamics/friction_laws/sigmoid.hpp"
 #include "chain_dynamics/friction_laws/smooth_coulomb.hpp"
@@ -51,42 +52,33 @@ namespace internal {
 // Multiples of vs beyond which nothing is left of the Stribeck effect: exp(-400) = 2e-174.
 constexpr double kBeyondStribeck = 20;
 
-// Height B of the step, and its derivatives by qd and by |g|.
-struct StepHeight {
-  double height, by_velocity, by_load;
-};
-
-inline StepHeight stepHeight(const FrictionForm& form, double qd, double g) {
-  StepHeight B{form.A, 0, form.fl};
-  if (form.fl != 0) B.height += form.fl * std::abs(g);
-  if (form.fs != 0) {
-    const double u = std::clamp(qd * form.per_vs, -kBeyondStribeck, kBeyondStribeck);
-    const double stribeck = form.fs * std::exp(-u * u);
-    B.height += stribeck;
-    B.by_velocity = -2 * form.per_vs * u * stribeck;
-  }
-  return B;
-}
-
-inline bool hasStep(const FrictionForm& form) {
-  return form.A != 0 || form.fl != 0 || form.fs != 0;
-}
-
 }  // namespace internal
 
 /// Friction torque [N m] of a law at the velocity qd [rad/s] under the gravity torque g [N m]. NaN
 /// for NaN; finite for finite numbers.
 ///
+/// @tparam Number  double or a dual number.
 /// @param g  not used by laws without a load coefficient: dependsOnLoad().
-inline double friction(const FrictionForm& law, double qd, double g) {
-  const double sign = qd > 0 ? 1.0 : (qd < 0 ? -1.0 : 0.0);
-  const double f = law.fv * qd + law.fc * sign + law.fo;  // NaN stays: 0 * NaN is NaN
-  if (!internal::hasStep(law)) return f;
-  const double step = sigmoid(law.alpha * (qd + law.shift)) - law.center;
-  return f + internal::stepHeight(law, qd, g).height * step;
+template <typename Number>
+Number friction(const FrictionForm& law, const Number& qd, const Number& g) {
+  using std::abs;
+  using std::exp;
+  const double sign = qd > Number(0) ? 1.0 : (qd < Number(0) ? -1.0 : 0.0);
+  Number f = law.fv * qd + law.fc * sign + law.fo;  // NaN stays: 0 * NaN is NaN
+  Number height = law.A;
+  if (law.fl != 0) height += law.fl * abs(g);
+  if (law.fs != 0) {
+    const Number most = internal::kBeyondStribeck;
+    const Number u = std::clamp<Number>(qd * law.per_vs, -most, most);
+    height += law.fs * exp(-u * u);
+  }
+  if (law.A != 0 || law.fl != 0 || law.fs != 0) {
+    f += height * (sigmoid(law.alpha * (qd + law.shift)) - law.center);
+  }
+  return f;
 }
 
-/// @copydoc friction(const FrictionForm&, double, double)
+/// @copydoc friction(const FrictionForm&, const Number&, const Number&)
 inline double friction(const FrictionLaw& law, double qd, double g) {
   return friction(formOf(law), qd, g);
 }
@@ -96,12 +88,9 @@ inline double friction(const FrictionLaw& law, double qd, double g) {
 ///
 /// A jump (Coulomb friction at rest) has none and counts as nothing.
 inline double frictionSlope(const FrictionForm& law, double qd, double g) {
+  using Number = Dual<double, 1>;
   if (std::isnan(qd)) return qd;
-  if (!internal::hasStep(law)) return law.fv;
-  const double x = law.alpha * (qd + law.shift);
-  const internal::StepHeight B = internal::stepHeight(law, qd, g);
-  return law.fv + B.by_velocity * (sigmoid(x) - law.center) +
-         B.height * law.alpha * sigmoid(x) * sigmoid(-x);
+  return friction<Number>(law, Number::variable(qd, 0), g).derivative[0];
 }
 
 /// @copydoc frictionSlope(const FrictionForm&, double, double)
@@ -112,9 +101,9 @@ inline double frictionSlope(const FrictionLaw& law, double qd, double g) {
 /// The derivative `df/dg` [1] of a law at the velocity qd [rad/s] by the gravity torque g [N m]; zero
 /// at g = 0, where |g| has none.
 inline double frictionLoadSlope(const FrictionForm& law, double qd, double g) {
+  using Number = Dual<double, 1>;
   if (law.fl == 0 || g == 0) return 0;
-  const double step = sigmoid(law.alpha * (qd + law.shift)) - law.center;
-  return std::copysign(law.fl, g) * step;
+  return friction<Number>(law, qd, Number::variable(g, 0)).derivative[0];
 }
 
 /// @copydoc frictionLoadSlope(const FrictionForm&, double, double)
@@ -144,17 +133,6 @@ void checkFriction(const FrictionLaw& law, const std::string& where);
 void frictionVector(const std::vector<FrictionLaw>& laws,
                     const Eigen::Ref<const Eigen::VectorXd>& qd,
                     const Eigen::Ref<const Eigen::VectorXd>& g, Eigen::Ref<Eigen::VectorXd> f);
-
-/// Their derivatives: `slope_j = frictionSlope(laws[j], qd_j, g_j)`, the diagonal of `df/dqd`.
-///
-/// @param laws        one per joint.
-/// @param qd          n; rad/s (prismatic m/s).
-/// @param g           n; gravity torques, N m (prismatic N); where no law depends on load, may be
-///                    empty.
-/// @param[out] slope  n; N m s/rad (prismatic N s/m).
-void frictionSlopes(const std::vector<FrictionLaw>& laws,
-                    const Eigen::Ref<const Eigen::VectorXd>& qd,
-                    const Eigen::Ref<const Eigen::VectorXd>& g, Eigen::Ref<Eigen::VectorXd> slope);
 
 }  // namespace v2
 }  // namespace chain_dynamics

@@ -21,14 +21,6 @@
 namespace chain_dynamics {
 inline namespace v2 {
 
-/// `S`: the joint's motion of one rad/s or m/s.
-template <typename Scalar>
-Motion<Scalar> axisMotion(const Joint& joint) {
-  const Vector3<Scalar> zero = Vector3<Scalar>::Zero();
-  const Vector3<Scalar> z = Vector3<Scalar>::UnitZ();
-  return isPrismatic(joint) ? Motion<Scalar>{zero, z} : Motion<Scalar>{z, zero};
-}
-
 /// `S' F`: the part of a force that the motor feels; the rest goes into the bearings.
 template <typename Scalar>
 Scalar alongAxis(const Joint& joint, const Force<Scalar>& F) {

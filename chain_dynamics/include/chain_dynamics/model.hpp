@@ -132,7 +132,7 @@ void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVect
 /// Coriolis matrix of Christoffel's symbols: `C(q, qd)`; row j with the parameters of row j.
 ///
 /// `C qd` is that of coriolisVector(). `dH/dt = C + C'` without row parameters; with them, H isn't
-/// symmetric either. Recursion over blocks of links [coriolis_matrix.hpp], O(n^2), or once per row.
+/// symmetric either. By dual numbers [coriolis_matrix.hpp], O(n^2), or once per row.
 ///
 /// @param[out] C  n x n; kg m^2/s (prismatic kg/s, mixed kg m/s).
 void coriolisMatrix(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
@@ -170,14 +170,6 @@ bool frictionDependsOnLoad(const Model& model);
 void frictionVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     VectorRef f);
 
-/// Derivatives of the friction torques by velocity: the diagonal of `df/dqd`; zero where the model
-/// has no friction, but NaN for NaN.
-///
-/// @param q           n; rad (prismatic m); may be empty where frictionDependsOnLoad() is false.
-/// @param[out] slope  n; N m s/rad (prismatic N s/m).
-void frictionSlopes(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
-                    VectorRef slope);
-
 /// Adds the derivatives of the friction torques: `df/dq` to `dtau_dq`, `df/dqd` to `dtau_dqd`.
 ///
 /// `df_j/dq = df_j/dg_j dg_j/dq`; where a gravity torque is zero, |g_j| has no derivative, which
@@ -191,7 +183,7 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
 /// Derivatives of the joint torques without friction: `dtau/dq`, `dtau/dqd`, `dtau/dqdd = H(q)`.
 /// Those of friction are added by addFrictionDerivatives().
 ///
-/// Recursion over blocks of links [torque_derivatives.hpp], O(n^2), or once per row, O(n^3).
+/// By dual numbers [torque_derivatives.hpp], O(n^2), or once per row, O(n^3).
 ///
 /// @param[out] dtau_dq    n x n: entry (i, j) is that of tau_i by q_j; N m/rad (prismatic N, m).
 /// @param[out] dtau_dqd   n x n; N m s/rad (prismatic N, m).

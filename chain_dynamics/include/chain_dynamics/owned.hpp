@@ -96,9 +96,7 @@ class Owned : public Eigen::Map<Plain> {
 
   /// Another size; the numbers are lost unless it is the same.
   void resize(Eigen::Index rows, Eigen::Index cols) {
-    if (rows == this->rows() && cols == this->cols()) return;
-    *this = Owned();  // so that nothing is copied
-    reallocate(rows, cols);
+    if (rows != this->rows() || cols != this->cols()) allocate(rows, cols);
   }
   void resize(Eigen::Index size) {
     static_assert(kIsVector, "a matrix has rows and columns");
@@ -115,12 +113,6 @@ class Owned : public Eigen::Map<Plain> {
   Owned& setZero(Eigen::Index size) { return setConstant(size, Number(0)); }
   /// @}
 
-  /// Another number of columns; those that stay keep their numbers. A large matrix isn't copied.
-  void conservativeResize(Eigen::NoChange_t, Eigen::Index cols) {
-    static_assert(!Plain::IsRowMajor, "columns of a row-major matrix aren't contiguous");
-    reallocate(this->rows(), cols);
-  }
-
   /// A temporary isn't an output, nor a const one [states.hpp].
   friend std::true_type ownsMemory(const Owned*) { return {}; }
 
@@ -129,15 +121,14 @@ class Owned : public Eigen::Map<Plain> {
     void operator()(void* memory) const noexcept { std::free(memory); }
   };
 
-  void reallocate(Eigen::Index rows, Eigen::Index cols) {
+  void allocate(Eigen::Index rows, Eigen::Index cols) {
     constexpr auto kMost = static_cast<std::size_t>(PTRDIFF_MAX) / sizeof(Number);
     if (cols > 0 && static_cast<std::size_t>(rows) > kMost / static_cast<std::size_t>(cols)) {
       throw std::bad_alloc();
     }
     const auto bytes = static_cast<std::size_t>(rows * cols) * sizeof(Number);
-    void* const memory = std::realloc(memory_.get(), bytes > 0 ? bytes : 1);
+    void* const memory = std::malloc(bytes > 0 ? bytes : 1);
     if (memory == nullptr) throw std::bad_alloc();
-    static_cast<void>(memory_.release());
     memory_.reset(static_cast<Number*>(memory));
     view(rows, cols);
   }

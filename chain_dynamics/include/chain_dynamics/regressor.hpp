@@ -7,14 +7,8 @@
 ///     regressor(chain, q, qd, qdd, Y);
 ///     tau = Y * parameters(chain) + rotor_inertia.cwiseProduct(qdd);
 ///
-/// The force that gives a body its motion, with the classical acceleration of the frame's origin
-/// a_c = a + w x v and the angular acceleration dw, is linear in its ten parameters:
-///
-///     force  = m a_c + dw x mc + w x (w x mc)
-///     moment = mc x a_c + I dw + w x (I w)
-///
-/// so it is a 6 x 10 matrix, made of the motion alone, times [m, mc, I]. Carried from joint to
-/// joint like any force, its columns are the torques of one unit of each parameter.
+/// The force `I A + V x* (I V)` that gives a body its motion is linear in its ten parameters, so a column
+/// is the force of one unit of a parameter, carried from joint to joint like any force.
 
 #pragma once
 
@@ -35,58 +29,6 @@ inline Eigen::VectorXd parameters(const Chain& chain) {
   }
   return p;
 }
-
-namespace internal {
-
-// Ten forces side by side, one per unit of each parameter.
-template <typename Scalar>
-struct ForceColumns {
-  Eigen::Matrix<Scalar, 3, 10> moment;
-  Eigen::Matrix<Scalar, 3, 10> force;
-};
-
-// The matrix L of I w = L(w) [Ixx, Ixy, Ixz, Iyy, Iyz, Izz].
-template <typename Scalar>
-Eigen::Matrix<Scalar, 3, 6> inertiaTimes(const Vector3<Scalar>& w) {
-  const Scalar o(0);
-  Eigen::Matrix<Scalar, 3, 6> L;
-  L << w.x(), w.y(), w.z(), o, o, o,  //
-      o, w.x(), o, w.y(), w.z(), o,   //
-      o, o, w.x(), o, w.y(), w.z();
-  return L;
-}
-
-// Force on a body moving with V and A, as a function of its parameters.
-template <typename Scalar>
-ForceColumns<Scalar> bodyRegressor(const Motion<Scalar>& V, const Motion<Scalar>& A) {
-  const Matrix3<Scalar> w_x = skew<Scalar>(V.angular);
-  const Vector3<Scalar> a_c = A.linear + V.angular.cross(V.linear);
-  ForceColumns<Scalar> columns;
-
-  // m: (0, a_c)
-  columns.moment.col(0).setZero();
-  columns.force.col(0) = a_c;
-
-  // mc: (-a_c x, dw x + w x w x)
-  columns.moment.template middleCols<3>(1) = -skew<Scalar>(a_c);
-  columns.force.template middleCols<3>(1) = skew<Scalar>(A.angular) + w_x * w_x;
-
-  // I: (L(dw) + w x L(w), 0)
-  columns.moment.template rightCols<6>() = inertiaTimes(A.angular) + w_x * inertiaTimes(V.angular);
-  columns.force.template rightCols<6>().setZero();
-  return columns;
-}
-
-// F_A = X_AB F_B, column by column.
-template <typename Scalar>
-ForceColumns<Scalar> operator*(const Transform<Scalar>& X_AB, const ForceColumns<Scalar>& F_B) {
-  ForceColumns<Scalar> F_A;
-  F_A.force = X_AB.R * F_B.force;
-  F_A.moment = X_AB.R * F_B.moment + skew<Scalar>(X_AB.p) * F_A.force;
-  return F_A;
-}
-
-}  // namespace internal
 
 /// Regressor of the inverse dynamics: `Y(q, qd, qdd)` with `tau = Y p` for any parameters p.
 ///
@@ -115,12 +57,13 @@ void regressor(const Chain& chain, const Eigen::MatrixBase<Q>& q, const Eigen::M
 
   MatrixY& output = Y.const_cast_derived();
   output.setZero();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    // link i loads its own joint and every joint before it
-    internal::ForceColumns<Scalar> F = internal::bodyRegressor(V[i], A[i]);
-    for (Eigen::Index j = i; j >= 0; --j) {
-      const bool prismatic = isPrismatic(internal::joint(chain, j));
-      output.row(j).template segment<10>(10 * i) = (prismatic ? F.force : F.moment).row(2);
+  for (Eigen::Index column = 0; column < 10 * n; ++column) {
+    // the force that a unit of the parameter needs: it loads the link's own joint and those before it
+    const Eigen::Index link = column / 10;
+    const auto I = SpatialInertia<Scalar>::fromVector(Vector10<Scalar>::Unit(column % 10));
+    Force<Scalar> F = I * A[link] + cross(V[link], I * V[link]);
+    for (Eigen::Index j = link; j >= 0; --j) {
+      output(j, column) = alongAxis(internal::joint(chain, j), F);
       if (j > 0) F = X[j] * F;
     }
   }

@@ -20,21 +20,21 @@ inline namespace v2 {
 /// Chains of up to this many joints need no memory but the stack.
 constexpr Eigen::Index kStackJoints = 64;
 
-/// Array of a size known at run time: on the stack up to kStackJoints elements, else on the heap.
+/// Array of a size known at run time: on the stack up to StackSize elements, else on the heap.
 ///
 /// This is why the algorithms promise no allocation up to 64 joints. An algorithm on double keeps
-/// at most 24 KiB on the stack, one on a dual number with N directions N + 1 times as much. A
-/// longer chain allocates, and may throw std::bad_alloc.
+/// at most 24 KiB on the stack, one on a dual number with N directions (a derivative: one) N + 1 times
+/// as much. A longer chain allocates, and may throw std::bad_alloc.
 ///
 /// @tparam T  elements are default-constructed: structs of Eigen vectors of double stay as they
 ///     are in memory, which costs nothing.
-template <typename T>
+template <typename T, Eigen::Index StackSize = kStackJoints>
 class Scratch {
  public:
   explicit Scratch(Eigen::Index size)
       : size_(static_cast<std::size_t>(size)),
-        data_(size <= kStackJoints ? reinterpret_cast<T*>(stack_)
-                                   : std::allocator<T>().allocate(size_)) {
+        data_(size <= StackSize ? reinterpret_cast<T*>(stack_)
+                                : std::allocator<T>().allocate(size_)) {
     std::uninitialized_default_construct_n(data_, size_);
   }
 
@@ -56,7 +56,7 @@ class Scratch {
   }
 
  private:
-  alignas(T) unsigned char stack_[sizeof(T) * kStackJoints];
+  alignas(T) unsigned char stack_[sizeof(T) * StackSize];
   std::size_t size_;
   T* data_;
 };

@@ -24,6 +24,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/kinematics.hpp"
 
 namespace chain_dynamics {
@@ -104,33 +105,20 @@ void tipJacobian(const Chain& chain, const Eigen::MatrixBase<Q>& q,
 template <typename Q, typename Qd, typename MatrixJ>
 void tipJacobianDerivative(const Chain& chain, const Eigen::MatrixBase<Q>& q,
                            const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<MatrixJ>& dJ) {
-  using Scalar = typename Q::Scalar;
+  using Number = Dual<typename Q::Scalar, 1>;
   const Eigen::Index n = chain.jointCount();
   assert(qd.size() == n && dJ.rows() == 6 && dJ.cols() == n);
-  MatrixJ& out = dJ.const_cast_derived();
-  Scratch<Transform<Scalar>> X_0(n);
-  Scratch<Vector3<Scalar>> w(n);   // angular velocity of link i
-  Scratch<Vector3<Scalar>> dp(n);  // velocity of its origin
-  const Vector3<Scalar> p_tip = internal::linksOnFirstJoint(chain, q, X_0);
+  Scratch<Number> q_memory(n);
+  Scratch<Eigen::Matrix<Number, 6, 1>> J_memory(n);
+  Eigen::Map<Eigen::Matrix<Number, Eigen::Dynamic, 1>> moving(&q_memory[0], n);
+  Eigen::Map<Eigen::Matrix<Number, 6, Eigen::Dynamic>> J(J_memory[0].data(), 6, n);
 
-  for (Eigen::Index i = 0; i < n; ++i) {
-    w[i] = dp[i] = Vector3<Scalar>::Zero();
-    if (i > 0) {
-      w[i] = w[i - 1];
-      dp[i] = dp[i - 1] + w[i - 1].cross(X_0[i].p - X_0[i - 1].p);
-    }
-    (isPrismatic(internal::joint(chain, i)) ? dp[i] : w[i]) += X_0[i].R.col(2) * qd[i];
-  }
-  const Vector3<Scalar> dp_tip = dp[n - 1] + w[n - 1].cross(p_tip - X_0[n - 1].p);
-
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Vector3<Scalar> z = X_0[i].R.col(2);
-    const Vector3<Scalar> dz = w[i].cross(z);
-    if (isPrismatic(internal::joint(chain, i))) {
-      out.col(i) << dz, Vector3<Scalar>::Zero();
-    } else {
-      out.col(i) << dz.cross(p_tip - X_0[i].p) + z.cross(dp_tip - dp[i]), dz;
-    }
+  // the one direction of the dual numbers is time
+  for (Eigen::Index j = 0; j < n; ++j)
+    moving[j] = {q[j], Eigen::Matrix<typename Q::Scalar, 1, 1>(qd[j])};
+  tipJacobian(chain, moving, J);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i < 6; ++i) dJ.const_cast_derived()(i, j) = J(i, j).derivative[0];
   }
 }
 

@@ -2,8 +2,8 @@
 
 // The fast kernels of one instruction set for one state. Compiled once for each set, with
 // CHAIN_DYNAMICS_KERNELS the name of the function that gives the table. Everything else has internal
-// linkage, and no header with functions but robot.hpp and math.h is used: the linker must not mix
-// functions of different sets.
+// linkage, and no header with functions but robot.hpp and math.h is used (coefficients.hpp has structs):
+// the linker must not mix functions of different sets.
 
 #include "one_state.hpp"
 

@@ -47,8 +47,7 @@ void forwardDynamicsBatch(const Robot& robot, int structure, std::ptrdiff_t stat
 
 /// Packs of the entries of matrices, (i, j) at i + j rows, to the matrices of each state.
 FAST_INLINE void scatterMatrix(Pack* entries, int n, const Lanes& lanes, const Matrices& to) {
-  const bool columns = to.column_step != 1;
-  if (!columns) {
+  if (to.column_step == 1) {
     for (int i = 1; i < n; ++i) {
       for (int j = 0; j < i; ++j) {
         const Pack above = entries[j + i * n];
@@ -57,17 +56,7 @@ FAST_INLINE void scatterMatrix(Pack* entries, int n, const Lanes& lanes, const M
       }
     }
   }
-  // columns in turn, or rows, whichever stand side by side
-  const std::ptrdiff_t major_step = columns ? to.column_step : to.row_step;
-  const std::ptrdiff_t minor_step = columns ? to.row_step : 1;
-  if (minor_step == 1 && major_step == n) {
-    scatter(entries, n * n, lanes, to.data, 1, to.state_step);
-    return;
-  }
-  for (int j = 0; j < n; ++j) {
-    scatter(entries + std::ptrdiff_t{j} * n, n, lanes, to.data + j * major_step, minor_step,
-            to.state_step);
-  }
+  scatterColumns(entries, n, n, lanes, sideBySide(to));
 }
 
 void torqueDerivativesBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,

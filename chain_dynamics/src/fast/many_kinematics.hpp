@@ -22,14 +22,7 @@ void tipPoseBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
     Pack position[3];
     x.readPositions(robot, q, lanes, FirstJoint::kNeeded);
     tipKinematicsOf<Pack>(structure).pose(robot, x.state(), rotation, position);
-    if (R.row_step == 1 && R.column_step == 3) {
-      scatter<9>(rotation, 9, lanes, R.data, 1, R.state_step);
-    } else {
-      for (int column = 0; column < 3; ++column) {
-        scatter<3>(rotation + std::ptrdiff_t{3} * column, 3, lanes, R.data + column * R.column_step,
-                   R.row_step, R.state_step);
-      }
-    }
+    scatterColumns<3>(rotation, 3, 3, lanes, R);
     scatter<3>(position, 3, lanes, p.data, p.joint_step, p.state_step);
   });
 }
@@ -37,19 +30,14 @@ void tipPoseBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
 /// Packs of the entries of 6 x n matrices, (i, j) at i + 6 j, to the matrices of each state.
 FAST_INLINE void scatterJacobian(const Pack* entries, int n, const Lanes& lanes,
                                  const Matrices& to) {
-  if (to.row_step == 1 && to.column_step == 6) {
-    scatter(entries, 6 * n, lanes, to.data, 1, to.state_step);
-  } else if (to.column_step == 1) {
+  if (to.column_step == 1) {
     for (int i = 0; i < 6; ++i) {
       Pack row[kMaxJoints];
       for (int j = 0; j < n; ++j) row[j] = entries[i + 6 * j];
       scatter(row, n, lanes, to.data + i * to.row_step, 1, to.state_step);
     }
   } else {
-    for (int j = 0; j < n; ++j) {
-      scatter<6>(entries + std::ptrdiff_t{6} * j, 6, lanes, to.data + j * to.column_step,
-                 to.row_step, to.state_step);
-    }
+    scatterColumns<6>(entries, 6, n, lanes, to);
   }
 }
 

@@ -3,8 +3,8 @@
 /// @file
 /// What solvers compute of many states, a pack at a time.
 ///
-/// N is the number of joints where the compiler is to know it, or zero: worth up to 4 % for one number per joint, nothing
-/// for matrices.
+/// N is the number of joints where the compiler is to know it, or zero: worth up to 4 % for one number
+/// per joint, nothing for matrices.
 ///
 /// Included by many_kernels.cpp only [pack.hpp].
 
@@ -44,25 +44,33 @@ struct PackOfStates {
   }
 };
 
+/// Packs of a matrix's columns, one after the other, to the matrices of each state.
+template <int Rows = 0>
+FAST_INLINE void scatterColumns(const Pack* entries, int rows, int columns, const Lanes& lanes,
+                                const Matrices& to) {
+  if (to.row_step == 1 && to.column_step == rows) {
+    scatter(entries, rows * columns, lanes, to.data, 1, to.state_step);
+    return;
+  }
+  for (int j = 0; j < columns; ++j) {
+    scatter<Rows>(entries + std::ptrdiff_t{rows} * j, rows, lanes, to.data + j * to.column_step,
+                  to.row_step, to.state_step);
+  }
+}
+
+/// The same matrices, or where rows stand side by side their transposes.
+FAST_INLINE Matrices sideBySide(const Matrices& H) {
+  return H.column_step != 1 ? H : Matrices{H.data, 1, H.row_step, H.state_step};
+}
+
 FAST_INLINE void inertiaOfPack(const Robot& robot, int structure, const State<Pack>& state,
                                const Lanes& lanes, const Matrices& H) {
   const int n = robot.joints;
-  Pack entries[kPackedMatrixJoints * kPackedMatrixJoints];
-
-  // columns in turn, or rows, whichever stand side by side
   const bool columns = H.column_step != 1;
-  const std::ptrdiff_t major_step = columns ? H.column_step : H.row_step;
-  const std::ptrdiff_t minor_step = columns ? H.row_step : 1;
+  Pack entries[kPackedMatrixJoints * kPackedMatrixJoints];
   recursionsOf<Pack>(structure).inertia(robot, state,
                                         Entries<Pack>{entries, columns ? 1 : n, columns ? n : 1});
-  if (minor_step == 1 && major_step == n) {
-    scatter(entries, n * n, lanes, H.data, 1, H.state_step);
-    return;
-  }
-  for (int j = 0; j < n; ++j) {
-    scatter(entries + std::ptrdiff_t{j} * n, n, lanes, H.data + j * major_step, minor_step,
-            H.state_step);
-  }
+  scatterColumns(entries, n, n, lanes, sideBySide(H));
 }
 
 template <int N>

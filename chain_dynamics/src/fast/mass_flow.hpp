@@ -3,7 +3,16 @@
 /// @file
 /// How mass flows past a joint, and what a motion across the joint's axis needs.
 ///
-/// Included by the kernels' two sources only [pack.hpp]. Names as in chain_dynamics/mass_flow.hpp.
+/// A point of mass m at r that moves with velocity u needs the force 2 m w x u more when its
+/// surroundings turn with w: Coriolis' force. Of many bodies that move each in its own way, that is
+///
+///     force  = sum of 2 m w x u          = 2 w x (sum of m u)
+///     moment = sum of r x (2 m w x u)    = 2 (trace(Q) w - Q w),   Q = sum of m u r'
+///
+/// so twelve numbers say it all, and those of several bodies add up. (As a 6 x 6 matrix on (w, 0)
+/// this is 2 B of the literature [Singh, Russell, Wensing 2022, arXiv 2105.05102].)
+///
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
 

@@ -68,8 +68,8 @@ struct TipKinematics {
 template <typename V>
 using AnyWithMatrices = AnyOf<sizeof(V) == sizeof(double) ? kMaxJoints : kPackedMatrixJoints>;
 
-/// Derivatives and Coriolis matrices are unrolled for one state of joints that turn, and for packs of states where right
-/// angles save most: they take long to compile.
+/// Derivatives and Coriolis matrices are unrolled for one state of joints that turn, and for packs of
+/// states where right angles save most: they take long to compile.
 template <typename S, typename V>
 using ForDerivatives = std::conditional_t<S::kMixed || (sizeof(V) > sizeof(double) && !S::kAligned),
                                           AnyWithMatrices<V>, S>;

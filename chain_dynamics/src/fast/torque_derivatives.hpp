@@ -3,10 +3,28 @@
 /// @file
 /// Derivatives of the torques on one structure, H among them: blocks of links from tip to root.
 ///
-/// Included by the kernels' two sources only [pack.hpp]. Names as in
-/// chain_dynamics/torque_derivatives.hpp, which tells why these are the derivatives.
+/// Included by the kernels' two sources only [pack.hpp]. O(n^2), or once per row of parameters
+/// [Carpentier and Mansard 2018, Robotics: Science and Systems; in this form Singh, Russell, Wensing
+/// 2022, arXiv 2105.05102].
+///
+/// Turn joint j a little further. Link i after it, with all that hangs on it, goes along as one
+/// block, and if the world went along too, nothing would change for joint i. But the world stays:
+/// compared with the block, it is the *base* on which joint j stands that has got another motion.
+/// The links feel that as an additional velocity and acceleration, the same motion for all of them:
+///
+///     by q_j:     dV = V x S,   dA = A x S + V x (V x S)          S: axis of joint j
+///     by qd_j:    dV = S,       dA = 2 V x S                      V, A: motion of link j
+///     by qdd_j:   dV = 0,       dA = S
+///
+/// What that costs in torque needs only sums over the links from i to the tip: their inertia I_c
+/// for dA, and the flow of their mass for dV, whose effect is Coriolis' force [mass_flow.hpp]. A
+/// joint j before the one that turns, i, has no such block. Its torque holds the same additional
+/// force of the links after i, and the force F that was there before, which has turned along: S_i
+/// x* F.
 
 #pragma once
+
+#include <type_traits>
 
 #include "gravity_vector.hpp"
 #include "mass_flow.hpp"
@@ -24,53 +42,68 @@ struct AxisRates {
   Vec<V> dw, dv;  ///< A x S + V x (V x S)
 };
 
-/// A link's motion, with what torques alone don't need.
+/// A link's velocity (w, v); also its motion and its joint's dw, dv where they are asked for.
 template <typename V>
 struct MovingLink {
-  LinkMotion<V> U;
   Vec<V> w, v;
   AxisRates<V> rates;
+  LinkMotion<V> U;
 };
 
 template <typename V>
-FAST_INLINE AxisRates<V> ratesOf(bool prismatic, const LinkMotion<V>& U, const Vec<V>& w,
-                                 const Vec<V>& v) {
-  const Vec<V> w_x_z{w.y, -w.x, V{}};
-  const Vec<V> U_z{U.xz, U.yz, U.zz};
-  if (prismatic) return {Vec<V>{}, w_x_z, Vec<V>{}, U_z};
-  const Vec<V> a_x_z{U.a.y + 2.0 * (v.z * w.x), 2.0 * (v.z * w.y) - U.a.x,
-                     -2.0 * (v.x * w.x + v.y * w.y)};
-  return {w_x_z, {v.y, -v.x, V{}}, U_z, a_x_z};
+FAST_INLINE Vec<V> acrossZ(const Vec<V>& v) {
+  return {v.y, -v.x, V{}};
+}
+
+/// From the velocity (w, v) of the link before to that of link i.
+template <typename S, typename I, typename V>
+FAST_INLINE void setVelocity(I i, const Robot& robot, const State<V>& state, Vec<V>& w, Vec<V>& v,
+                             MovingLink<V>& link) {
+  const Placement& X = robot.placements[i];
+  if (i != 0) {
+    constexpr Twist kTwist = S::twist(I());
+    const Turn<V> t{state.c[i], state.s[i], X};
+    if (S::px(i)) addTo(v, {V{}, w.z * X.px, -w.y * X.px});
+    if (S::py(i)) addTo(v, {-w.z * X.py, V{}, w.x * X.py});
+    w = into<kTwist>(t, w);
+    v = into<kTwist>(t, v);
+  }
+  if (S::kMixed && X.prismatic) {
+    addTo(v, {w.y * state.q[i], -w.x * state.q[i], state.qd[i]});
+    link.rates.w = Vec<V>{};
+    link.rates.v = acrossZ(w);
+  } else {
+    w.z += state.qd[i];
+    link.rates.w = acrossZ(w);
+    link.rates.v = acrossZ(v);
+  }
+  link.w = w;
+  link.v = v;
 }
 
 template <typename V>
-FAST_INLINE Vec<V> twice(const Vec<V>& v) {
-  return {2.0 * v.x, 2.0 * v.y, 2.0 * v.z};
+FAST_INLINE Vec<V> times(double factor, const Vec<V>& v) {
+  return {factor * v.x, factor * v.y, factor * v.z};
 }
 
-/// From root to tip.
+/// From root to tip, all numbers of each link.
 template <typename S, typename V>
 FAST_INLINE void moveLinks(const Robot& robot, const State<V>& state, const double* root,
                            MovingLink<V>* links) {
   Vec<V> w{};
   Vec<V> v{};
   forEachMotion<S>(robot, state, root, [&](auto i, const LinkMotion<V>& U) FAST_LAMBDA {
-    const Placement& X = robot.placements[i];
-    const bool prismatic = S::kMixed && X.prismatic;
-    if (i != 0) {
-      constexpr Twist kTwist = S::twist(decltype(i)());
-      const Turn<V> t{state.c[i], state.s[i], X};
-      if (S::px(i)) addTo(v, {V{}, w.z * X.px, -w.y * X.px});
-      if (S::py(i)) addTo(v, {-w.z * X.py, V{}, w.x * X.py});
-      w = into<kTwist>(t, w);
-      v = into<kTwist>(t, v);
-    }
-    if (prismatic) {
-      addTo(v, {w.y * state.q[i], -w.x * state.q[i], state.qd[i]});
+    MovingLink<V>& link = links[i];
+    setVelocity<S>(i, robot, state, w, v, link);
+    link.U = U;
+    link.rates.dw = {U.xz, U.yz, U.zz};
+    if (S::kMixed && robot.placements[i].prismatic) {
+      link.rates.dv = link.rates.dw;
+      link.rates.dw = Vec<V>{};
     } else {
-      w.z += state.qd[i];
+      link.rates.dv = {U.a.y + 2.0 * (v.z * w.x), 2.0 * (v.z * w.y) - U.a.x,
+                       -2.0 * (v.x * w.x + v.y * w.y)};
     }
-    links[i] = {U, w, v, ratesOf(prismatic, U, w, v)};
   });
 }
 
@@ -148,42 +181,50 @@ FAST_INLINE AxialRates<double> along(bool sliding, const FourForceRates& rates) 
           force[FourForceRates::kTurned]};
 }
 
-template <typename V>
+template <typename V, bool ByTravel>
 struct CarriedOf {
   using Type = ForceRates<V>;
 };
-template <>
-struct CarriedOf<double> {
-  using Type = FourForceRates;
+template <bool ByTravel>
+struct CarriedOf<double, ByTravel> {  // without travel, registers of two numbers gain nothing
+  using Type = std::conditional_t<ByTravel || kShortWidth == 4, FourForceRates, ForceRates<double>>;
 };
 
-/// The forces of joint i. `force` is what goes through it, `m` the mass of what it moves, if
-/// Massive; `flow` is twice the flow of that mass.
+/// What joint i needs for its own travel. `force` is what goes through it, `m` the mass of what it
+/// moves, if Massive; `flow` is twice the flow of that mass.
 template <bool Massive, typename V>
-FAST_INLINE ForceRates<V> forceRates(bool prismatic, const Composite<V>& I, double m,
-                                     const Flow<V>& flow, const Wrench<V>& force,
-                                     const AxisRates<V>& r) {
-  const V zero{};
+FAST_INLINE Wrench<V> forceByTravel(bool prismatic, const Composite<V>& I, double m,
+                                    const Flow<V>& flow, const Wrench<V>& force,
+                                    const AxisRates<V>& r) {
   const Vec<V>& f = force.f;
   const Vec<V>& n = force.n;
-  ForceRates<V> rates;
-  rates.by_q = timesMotion<Massive>(I, m, r.dw, r.dv);
-  rates.by_qd = timesAcross<Massive>(I, m, twice(r.w), twice(r.v));
+  Wrench<V> F = timesMotion<Massive>(I, m, r.dw, r.dv);
+  if (prismatic) {  // nothing turns: no Coriolis' force but by what turns before
+    addTo(F.n, {-f.y, f.x, V{}});
+    return F;
+  }
+  // Coriolis' force 2 w x p and moment 2 (trace(Q) w - Q w), of w = (w.x, w.y, 0)
+  const Vec<V>& w = r.w;
+  addTo(F.f, {w.y * flow.p.z - f.y, f.x - w.x * flow.p.z, w.x * flow.p.y - w.y * flow.p.x});
+  addTo(F.n,
+        {(flow.y.y + flow.z.z) * w.x - flow.y.x * w.y - n.y,
+         (flow.x.x + flow.z.z) * w.y - flow.x.y * w.x + n.x, -(flow.x.z * w.x + flow.y.z * w.y)});
+  return F;
+}
+
+/// The other forces of joint i; `factor` is that of the flow, too.
+template <bool Massive, typename V>
+FAST_INLINE ForceRates<V> forceRates(bool prismatic, const Composite<V>& I, double m,
+                                     const Flow<V>& flow, double factor, const AxisRates<V>& r) {
+  const V zero{};
+  ForceRates<V> rates{};
+  rates.by_qd = timesAcross<Massive>(I, m, times(factor, r.w), times(factor, r.v));
   if (prismatic) {
-    // nothing turns: no Coriolis' force but by what turns before
-    addTo(rates.by_q.n, {-f.y, f.x, zero});
     rates.by_qdd = {{zero, zero, m + zero}, {I.mc.y, -I.mc.x, zero}};
     rates.turned = {flow.p.y, -flow.p.x, zero};
     return rates;
   }
-  // Coriolis' force 2 w x p and moment 2 (trace(Q) w - Q w), of w = (w.x, w.y, 0) and of z
-  const Vec<V>& w = r.w;
-  const V xx_yy = flow.x.x + flow.y.y;
-  addTo(rates.by_q.f,
-        {w.y * flow.p.z - f.y, f.x - w.x * flow.p.z, w.x * flow.p.y - w.y * flow.p.x});
-  addTo(rates.by_q.n,
-        {(flow.y.y + flow.z.z) * w.x - flow.y.x * w.y - n.y,
-         (flow.x.x + flow.z.z) * w.y - flow.x.y * w.x + n.x, -(flow.x.z * w.x + flow.y.z * w.y)});
+  const V xx_yy = flow.x.x + flow.y.y;  // the moment of w = z
   addTo(rates.by_qd.f, {-flow.p.y, flow.p.x, zero});
   addTo(rates.by_qd.n, {-flow.z.x, -flow.z.y, xx_yy});
   rates.by_qdd = {{-I.mc.y, I.mc.x, zero}, {-I.xz, -I.yz, I.xx + I.yy}};
@@ -194,6 +235,9 @@ FAST_INLINE ForceRates<V> forceRates(bool prismatic, const Composite<V>& I, doub
 /// Where the entries go: (i, j) at i + j outer_step.
 template <typename V>
 struct DerivativeEntries {
+  static constexpr bool kByTravel = true;
+  static constexpr double kFlow = 2;  ///< Coriolis' force is twice w x p
+
   V *by_q, *by_qd, *by_qdd;
   std::ptrdiff_t outer_step;
 
@@ -207,24 +251,27 @@ struct DerivativeEntries {
 
 /// Row i and column i at joint j before it, from the forces of joint i, `axial` along the axis of j:
 /// what moves joint j is felt by i as motion, what moves joint i by j as force.
-template <typename V, typename Forces>
+template <typename V, typename Forces, typename Entries>
 FAST_INLINE void setEntries(int i, int j, int first, const Forces& F, const AxialRates<V>& axial,
-                            const AxisRates<V>& r, const DerivativeEntries<V>& out) {
+                            const AxisRates<V>& r, const Entries& out) {
   const Wrench<V> W = F.inertial();
   const Vec<V> turned = F.coriolis();
-  const V by_q = (r.w.x * turned.x + r.w.y * turned.y) +
-                 (r.dw.x * W.n.x + r.dw.y * W.n.y + r.dw.z * W.n.z) +
-                 (r.dv.x * W.f.x + r.dv.y * W.f.y + r.dv.z * W.f.z);
+  V by_q{};
+  if constexpr (Entries::kByTravel) {
+    by_q = (r.w.x * turned.x + r.w.y * turned.y) +
+           (r.dw.x * W.n.x + r.dw.y * W.n.y + r.dw.z * W.n.z) +
+           (r.dv.x * W.f.x + r.dv.y * W.f.y + r.dv.z * W.f.z);
+  }
   const V by_qd = r.w.x * W.n.x + r.w.y * W.n.y + r.v.x * W.f.x + r.v.y * W.f.y;
-  out.set(i, j, by_q, axial.turned + 2.0 * by_qd, axial.by_qdd);
+  out.set(i, j, by_q, axial.turned + Entries::kFlow * by_qd, axial.by_qdd);
   if (j >= first) out.set(j, i, axial.by_q, axial.by_qd, axial.by_qdd);
 }
 
 /// Rows first .. joints - 1 with one set of parameters.
-template <typename S, typename V>
+template <typename S, typename V, typename First, typename Entries>
 FAST_INLINE void derivativesOfMotion(const Robot& robot, const State<V>& state,
-                                     const MovingLink<V>* links, const Body* bodies, int first,
-                                     const DerivativeEntries<V>& out) {
+                                     const MovingLink<V>* links, const Body* bodies, First first,
+                                     const Entries& out) {
   Composite<V> I;
   Flow<V> flow;
   Wrench<V> W{};
@@ -233,13 +280,22 @@ FAST_INLINE void derivativesOfMotion(const Robot& robot, const State<V>& state,
     const Placement& X = robot.placements[i];
     const bool prismatic = S::kMixed && X.prismatic;
     const double m = S::kMixed ? body.mass_beyond : 0.0;  // joints that turn leave none
-    const Wrench<V> own = wrenchOfLink<S>(robot, i, links[i].U, body);
-    addTo(W.f, own.f);
-    addTo(W.n, own.n);
+    flow.add(prismatic, body, times(Entries::kFlow, links[i].w), times(Entries::kFlow, links[i].v));
+    if (!Entries::kByTravel && i == 0) {  // nothing is before it
+      out.set(0, 0, V{}, prismatic ? V{} : flow.x.x + flow.y.y, V{});
+      return;
+    }
     I.add(body);
-    flow.add(prismatic, body, twice(links[i].w), twice(links[i].v));
 
-    typename CarriedOf<V>::Type F(forceRates<S::kMixed>(prismatic, I, m, flow, W, links[i].rates));
+    ForceRates<V> rates =
+        forceRates<S::kMixed>(prismatic, I, m, flow, Entries::kFlow, links[i].rates);
+    if constexpr (Entries::kByTravel) {
+      const Wrench<V> own = wrenchOfLink<S>(robot, i, links[i].U, body);
+      addTo(W.f, own.f);
+      addTo(W.n, own.n);
+      rates.by_q = forceByTravel<S::kMixed>(prismatic, I, m, flow, W, links[i].rates);
+    }
+    typename CarriedOf<V, Entries::kByTravel>::Type F(rates);
     const AxialRates<V> own_axis = along(prismatic, F);
     out.set(i, i, own_axis.by_q, own_axis.by_qd, own_axis.by_qdd + X.rotor_inertia);
     S::backwardsFrom(i, [&](auto j) FAST_LAMBDA {

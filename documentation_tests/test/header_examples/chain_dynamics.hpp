@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <chain_dynamics/articulated_inertia.hpp>
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/energy.hpp>
 #include <chain_dynamics/fast_model.hpp>
@@ -33,18 +32,12 @@ extern const LinkParameters I_1;
 extern const SpatialInertia<double> link, I_B;
 extern const Transform<double> X_AB;
 extern const Motion<double> A_B, V_B;
-extern const Eigen::Vector3d w_B;
 
 // What a program does with results.
 template <class... Results>
 void print(const Results&...);
 
 // What means something else in each header.
-namespace articulated_inertia_examples {
-extern const ArticulatedInertia<double> I_B;
-extern const Force<double> U;
-extern const double inverse_D;
-}  // namespace articulated_inertia_examples
 namespace fast_model_examples {
 extern Eigen::MatrixXd Q, QD, QDD, TAU;
 }

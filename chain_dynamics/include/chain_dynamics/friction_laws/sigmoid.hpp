@@ -19,9 +19,14 @@ namespace chain_dynamics {
 inline namespace v2 {
 
 /// The logistic function `1 / (1 + exp(-x))`, without overflow for any x; NaN gives NaN.
-inline double sigmoid(double x) {
-  const double e = std::exp(-std::abs(x));  // never above one
-  return (x < 0 ? e : 1.0) / (1.0 + e);
+///
+/// @tparam Number  double or a dual number.
+template <typename Number>
+Number sigmoid(const Number& x) {
+  using std::abs;
+  using std::exp;
+  const Number e = exp(-abs(x));  // never above one
+  return (x < Number(0) ? e : Number(1)) / (Number(1) + e);
 }
 
 }  // namespace v2
