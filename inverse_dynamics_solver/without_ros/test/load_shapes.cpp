@@ -2,7 +2,7 @@
 //
 // Lists the installed shapes, then loads those that are named, and tells where a package is.
 
-#include <ament_index_cpp/get_package_share_directory.hpp>
+#include <ament_index.hpp>
 #include <iostream>
 #include <pluginlib/class_loader.hpp>
 
@@ -23,7 +23,7 @@ int main(int count, char** arguments) try {
       std::cout << "no such library: " << e.what() << "\n";
     }
   }
-  std::cout << ament_index_cpp::get_package_share_directory("shapes") << "\n";
+  std::cout << inverse_dynamics_solver::ament_index::packageShare("shapes") << "\n";
 } catch (const std::exception& e) {
   std::cout << "error: " << e.what() << "\n";
 }

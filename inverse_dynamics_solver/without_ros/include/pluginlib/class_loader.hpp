@@ -6,7 +6,7 @@
 #include <dlfcn.h>
 #include <tinyxml2.h>
 
-#include <ament_index_cpp/get_resources.hpp>
+#include <ament_index.hpp>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -78,9 +78,10 @@ inline void read_descriptions(const std::string& file, const std::string& prefix
 inline PluginDescriptions describe_plugins(const std::string& category, const std::string& base) {
   const std::string resource = category + "__pluginlib__plugin";
   PluginDescriptions found;
-  for (const auto& [package, prefix] : ament_index_cpp::get_resources(resource)) {
-    std::ifstream entry(ament_index_cpp::index_entry(prefix, resource, package));
-    for (std::string file; std::getline(entry, file);) {
+  namespace ament_index = inverse_dynamics_solver::ament_index;
+  for (const auto& [package, prefix] : ament_index::resources(resource)) {
+    std::ifstream files(ament_index::entry(prefix, resource, package));
+    for (std::string file; std::getline(files, file);) {
       if (!file.empty()) read_descriptions(prefix + "/" + file, prefix, package, base, found);
     }
   }
