@@ -53,14 +53,14 @@ TEST(Migration, CallsOfTheReferenceImplementationHaveTheirCounterparts) {
   // getDynamicParameters(), which still exists, too
   const auto [H, c, g] = solver->getDynamicComponents(q, qd);
 
-  // The free function getCurrents(q, qd, qdd, i), without friction. Likewise getInertiaCurrents(),
-  // getCoriolisCurrents() and getGravityCurrents().
-  const auto& motors = dynamic_cast<const MotorCurrents&>(*solver);
-  const Eigen::VectorXd i = motors.getCurrents(q, qd, qdd) - motors.getFrictionCurrents(qd);
-
   // The constants K1 to K6 and NUMBER_OF_JOINTS
+  const auto& motors = dynamic_cast<const MotorCurrents&>(*solver);
   const Eigen::VectorXd K = motors.getDriveGainsMatrix().diagonal();
   const Eigen::Index n = solver->jointCount();
+
+  // The free function getCurrents(q, qd, qdd, i), without friction; those of one term likewise
+  const Eigen::VectorXd i_f = solver->getFrictionVector(qd).cwiseQuotient(K);
+  const Eigen::VectorXd i = motors.getCurrents(q, qd, qdd) - i_f;
 
   // rclcpp::exceptions::InvalidParameterValueException. All exceptions of that family now derive from
   // inverse_dynamics_solver::Exception, a std::runtime_error.

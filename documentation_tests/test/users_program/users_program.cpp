@@ -153,10 +153,6 @@ TEST(UsersProgram, TakesMotorCurrentsByValue) {
   const MatrixXd K = motors->getDriveGainsMatrix();
   const VectorXd i = motors->getCurrents(kQ, kQd, kQdd);
   EXPECT_LT((K * i - solver->getTorques(kQ, kQd, kQdd)).cwiseAbs().maxCoeff(), kRounding);
-  const VectorXd terms = motors->getInertiaCurrents(kQ) * kQdd +
-                         motors->getCoriolisCurrents(kQ, kQd) + motors->getGravityCurrents(kQ) +
-                         motors->getFrictionCurrents(kQd);
-  EXPECT_LT((terms - i).cwiseAbs().maxCoeff(), kRounding);
   VectorXd mine(6);
   motors->getCurrents(kQ, kQd, kQdd, mine);
   EXPECT_EQ(mine, i);
