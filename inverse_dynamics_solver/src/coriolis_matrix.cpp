@@ -28,9 +28,7 @@ void CoriolisMatrix::getCoriolisMatrixBatch(const ConstStatesRef& q, const Const
 
 void CoriolisMatrix::computeCoriolisMatrixBatch(const ConstStates& q, const ConstStates& qd,
                                                 const StridedMatrices& C) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeCoriolisMatrix(of_state...); },
-      StateReader(q), StateReader(qd), MatrixWriter(C));
+  eachState([this](const auto&... of_state) { computeCoriolisMatrix(of_state...); }, q, qd, C);
 }
 
 }  // namespace v2

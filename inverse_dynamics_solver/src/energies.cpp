@@ -49,12 +49,7 @@ void Energies::getKineticEnergyBatch(const ConstStatesRef& q, const ConstStatesR
   require(hasEnergiesImpl(), "getKineticEnergyBatch");
   const auto of_state = [this](const ConstVectorRef& q_k, const ConstVectorRef& qd_k,
                                VectorRef T_k) { T_k[0] = computeKineticEnergy(q_k, qd_k); };
-  const auto of_part = [&](const ConstStates& q_part, const ConstStates& qd_part,
-                           const States& T_part) {
-    eachState(q_part.count, of_state, StateReader(q_part), StateReader(qd_part),
-              StateWriter(T_part));
-  };
-  call.share(of_part, q, qd, T);
+  call.share([&](const auto&... part) { eachState(of_state, part...); }, q, qd, T);
 }
 
 void Energies::getPotentialEnergyBatch(const ConstStatesRef& q, const States& U) const {
@@ -64,10 +59,7 @@ void Energies::getPotentialEnergyBatch(const ConstStatesRef& q, const States& U)
   const auto of_state = [this](const ConstVectorRef& q_k, VectorRef U_k) {
     U_k[0] = computePotentialEnergy(q_k);
   };
-  const auto of_part = [&](const ConstStates& q_part, const States& U_part) {
-    eachState(q_part.count, of_state, StateReader(q_part), StateWriter(U_part));
-  };
-  call.share(of_part, q, U);
+  call.share([&](const auto&... part) { eachState(of_state, part...); }, q, U);
 }
 
 }  // namespace v2

@@ -38,7 +38,7 @@ void ExternalWrench::torquesWithWrench(const ConstVectorRef& q, const ConstVecto
                                        VectorRef tau) const {
   torqueSolver().getTorques(q, qd, qdd, tau);  // checks all sizes
   Scratch<kMaxStackJoints> external(tau.size());
-  Eigen::Map<Eigen::VectorXd> of_wrench(external.data(), tau.size());
+  Eigen::Map<Eigen::VectorXd> of_wrench(&external[0], tau.size());
   computeExternalTorques(q, frame, together(force, torque), of_wrench);
   tau += of_wrench;
 }
@@ -67,7 +67,7 @@ void ExternalWrench::torquesWithWrenchBatch(const ConstStatesRef& q, const Const
     Scratch<kMaxStackJoints * kBlock> external(n * kBlock);
     for (Eigen::Index first = 0; first < q_part.count; first += kBlock) {
       const Eigen::Index size = std::min(kBlock, q_part.count - first);
-      const States of_wrenches(external.data(), n, size, 1, n);
+      const States of_wrenches(&external[0], n, size, 1, n);
       computeExternalTorquesBatch(q_part.middle(first, size), frame,
                                   wrenches_part.middle(first, size), of_wrenches);
       for (Eigen::Index k = 0; k < size; ++k) {
@@ -84,7 +84,7 @@ void ExternalWrench::computeExternalTorquesBatch(const ConstStates& q, WrenchFra
   const auto of_state = [&](const ConstVectorRef& q_k, const ConstVectorRef& w_k, VectorRef tau_k) {
     computeExternalTorques(q_k, frame, w_k, tau_k);
   };
-  eachState(q.count, of_state, StateReader(q), StateReader(wrenches), StateWriter(tau));
+  eachState(of_state, q, wrenches, tau);
 }
 
 }  // namespace v2

@@ -30,9 +30,8 @@ void ForwardDynamics::getAccelerationsBatch(const ConstStatesRef& q, const Const
 
 void ForwardDynamics::computeAccelerationsBatch(const ConstStates& q, const ConstStates& qd,
                                                 const ConstStates& tau, const States& qdd) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeAccelerations(of_state...); },
-      StateReader(q), StateReader(qd), StateReader(tau), StateWriter(qdd));
+  eachState([this](const auto&... of_state) { computeAccelerations(of_state...); }, q, qd, tau,
+            qdd);
 }
 
 }  // namespace v2

@@ -15,10 +15,6 @@ namespace {
 
 using Eigen::Index;
 
-using StackVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStackJoints, 1>;
-using StackMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStackJoints, kMaxStackJoints>;
-
 /// What the parameters state, but hardly mean.
 std::vector<std::string> doubts(const InverseDynamicsSolver& solver,
                                 const Configuration& configuration) {
@@ -150,27 +146,20 @@ void InverseDynamicsSolver::computeDynamicComponents(const ConstVectorRef& q,
 void InverseDynamicsSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
                                            const ConstVectorRef& qdd, VectorRef tau) const {
   const Index n = q.size();
+  Scratch<kMaxStackJoints * kMaxStackJoints> matrix(n * n);
+  Scratch<kMaxStackJoints> vector(n);
+  Eigen::Map<Eigen::MatrixXd> H(&matrix[0], n, n);
+  Eigen::Map<Eigen::VectorXd> term(&vector[0], n);
 
   // tau = H qdd + C qd + f + g, each term added as it comes
-  const auto sum = [&](MatrixRef H, VectorRef term) {
-    computeInertiaMatrix(q, H);
-    tau.noalias() = H.lazyProduct(qdd);
-    computeCoriolisVector(q, qd, term);
-    tau += term;
-    computeFriction(q, qd, term);
-    tau += term;
-    computeGravityVector(q, term);
-    tau += term;
-  };
-  if (n <= kMaxStackJoints) {
-    StackMatrix H(n, n);
-    StackVector term(n);
-    sum(H, term);
-  } else {
-    Eigen::MatrixXd H(n, n);
-    Eigen::VectorXd term(n);
-    sum(H, term);
-  }
+  computeInertiaMatrix(q, H);
+  tau.noalias() = H.lazyProduct(qdd);
+  computeCoriolisVector(q, qd, term);
+  tau += term;
+  computeFriction(q, qd, term);
+  tau += term;
+  computeGravityVector(q, term);
+  tau += term;
 }
 
 }  // namespace v2

@@ -65,45 +65,34 @@ void InverseDynamicsSolver::getTorquesBatch(const ConstStatesRef& q, const Const
 
 void InverseDynamicsSolver::computeInertiaMatrixBatch(const ConstStates& q,
                                                       const StridedMatrices& H) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeInertiaMatrix(of_state...); },
-      StateReader(q), MatrixWriter(H));
+  eachState([this](const auto&... of_state) { computeInertiaMatrix(of_state...); }, q, H);
 }
 
 void InverseDynamicsSolver::computeCoriolisVectorBatch(const ConstStates& q, const ConstStates& qd,
                                                        const States& c) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeCoriolisVector(of_state...); },
-      StateReader(q), StateReader(qd), StateWriter(c));
+  eachState([this](const auto&... of_state) { computeCoriolisVector(of_state...); }, q, qd, c);
 }
 
 void InverseDynamicsSolver::computeFrictionBatch(const ConstStates& q, const ConstStates& qd,
                                                  const States& f) const {
-  eachState(
-      qd.count, [this](const auto&... of_state) { computeFriction(of_state...); }, StateReader(q),
-      StateReader(qd), StateWriter(f));
+  eachState([this](const auto&... of_state) { computeFriction(of_state...); }, q, qd, f);
 }
 
 void InverseDynamicsSolver::computeGravityVectorBatch(const ConstStates& q, const States& g) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeGravityVector(of_state...); },
-      StateReader(q), StateWriter(g));
+  eachState([this](const auto&... of_state) { computeGravityVector(of_state...); }, q, g);
 }
 
 void InverseDynamicsSolver::computeDynamicComponentsBatch(const ConstStates& q,
                                                           const ConstStates& qd,
                                                           const StridedMatrices& H, const States& c,
                                                           const States& g) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeDynamicComponents(of_state...); },
-      StateReader(q), StateReader(qd), MatrixWriter(H), StateWriter(c), StateWriter(g));
+  eachState([this](const auto&... of_state) { computeDynamicComponents(of_state...); }, q, qd, H, c,
+            g);
 }
 
 void InverseDynamicsSolver::computeTorquesBatch(const ConstStates& q, const ConstStates& qd,
                                                 const ConstStates& qdd, const States& tau) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeTorques(of_state...); }, StateReader(q),
-      StateReader(qd), StateReader(qdd), StateWriter(tau));
+  eachState([this](const auto&... of_state) { computeTorques(of_state...); }, q, qd, qdd, tau);
 }
 
 }  // namespace v2

@@ -60,20 +60,17 @@ void Kinematics::computeTipPoseBatch(const ConstStates& q, const StridedMatrices
     R_k = pose.R;
     p_k = pose.p;
   };
-  eachState(q.count, pose_of_state, StateReader(q), MatrixWriter(R), StateWriter(p));
+  eachState(pose_of_state, q, R, p);
 }
 
 void Kinematics::computeTipJacobianBatch(const ConstStates& q, const StridedMatrices& J) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeTipJacobian(of_state...); }, StateReader(q),
-      MatrixWriter(J));
+  eachState([this](const auto&... of_state) { computeTipJacobian(of_state...); }, q, J);
 }
 
 void Kinematics::computeTipJacobianDerivativeBatch(const ConstStates& q, const ConstStates& qd,
                                                    const StridedMatrices& dJ) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeTipJacobianDerivative(of_state...); },
-      StateReader(q), StateReader(qd), MatrixWriter(dJ));
+  eachState([this](const auto&... of_state) { computeTipJacobianDerivative(of_state...); }, q, qd,
+            dJ);
 }
 
 }  // namespace v2

@@ -85,19 +85,13 @@ Parameters Parameters::watched(std::function<void(const std::string& name)> aske
 }
 
 Parameters Parameters::strict() const {
-  if (!names_) {
-    throw InvalidParameterValueException(errorText(
-        "parameters", "unknown names can't be refused", "a source that can list its parameters",
-        "one that only answers by name",
-        "give a node's parameters interface, a map or YAML, or initialize without strict()"));
-  }
   Parameters result = *this;
   result.strict_ = true;
   return result;
 }
 
 std::vector<std::string> Parameters::names() const {
-  std::vector<std::string> names = names_ ? names_() : std::vector<std::string>();
+  std::vector<std::string> names = names_();
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;

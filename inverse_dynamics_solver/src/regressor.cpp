@@ -31,9 +31,7 @@ void Regressor::getRegressorBatch(const ConstStatesRef& q, const ConstStatesRef&
 
 void Regressor::computeRegressorBatch(const ConstStates& q, const ConstStates& qd,
                                       const ConstStates& qdd, const StridedMatrices& Y) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeRegressor(of_state...); }, StateReader(q),
-      StateReader(qd), StateReader(qdd), MatrixWriter(Y));
+  eachState([this](const auto&... of_state) { computeRegressor(of_state...); }, q, qd, qdd, Y);
 }
 
 }  // namespace v2

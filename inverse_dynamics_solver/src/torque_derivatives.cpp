@@ -43,10 +43,8 @@ void TorqueDerivatives::computeTorqueDerivativesBatch(const ConstStates& q, cons
                                                       const StridedMatrices& dtau_dq,
                                                       const StridedMatrices& dtau_dqd,
                                                       const StridedMatrices& dtau_dqdd) const {
-  eachState(
-      q.count, [this](const auto&... of_state) { computeTorqueDerivatives(of_state...); },
-      StateReader(q), StateReader(qd), StateReader(qdd), MatrixWriter(dtau_dq),
-      MatrixWriter(dtau_dqd), MatrixWriter(dtau_dqdd));
+  eachState([this](const auto&... of_state) { computeTorqueDerivatives(of_state...); }, q, qd, qdd,
+            dtau_dq, dtau_dqd, dtau_dqdd);
 }
 
 }  // namespace v2

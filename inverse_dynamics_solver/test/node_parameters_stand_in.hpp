@@ -111,14 +111,4 @@ class NodeParameters : public NodeParametersInterface {
   }
 };
 
-/// Only the two methods without which nothing can be read; a parameter that isn't set has that
-/// type.
-class MinimalParameters {
- public:
-  std::map<std::string, Parameter::Value> values;
-
-  bool has_parameter(const std::string& name) const { return values.count(name) > 0; }
-  Parameter get_parameter(const std::string& name) const { return Parameter(values.at(name)); }
-};
-
 }  // namespace stand_in

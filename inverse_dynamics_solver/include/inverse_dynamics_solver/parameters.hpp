@@ -43,7 +43,8 @@ struct IsParametersInterface : std::false_type {};
 template <class T>
 struct IsParametersInterface<
     T, std::void_t<decltype(std::declval<T&>().has_parameter(std::string())),
-                   decltype(std::declval<T&>().get_parameter(std::string()).get_type())>>
+                   decltype(std::declval<T&>().get_parameter(std::string()).get_type()),
+                   decltype(std::declval<T&>().list_parameters({}, std::uint64_t{0}).names)>>
     : std::true_type {};
 
 /// Value of the parameter `name` of such an interface; absent if not set.
@@ -53,15 +54,6 @@ std::optional<ParameterValue> readParameter(Interface& interface, const std::str
 /// Names of all parameters that are set in such an interface.
 template <class Interface>
 std::vector<std::string> setParameters(Interface& interface);
-
-/// True if such an interface has list_parameters(), so that setParameters() can be called.
-template <class T, class = void>
-struct CanList : std::false_type {};
-template <class T>
-struct CanList<
-    T, std::void_t<decltype(std::declval<T&>()
-                                .list_parameters(std::vector<std::string>(), std::uint64_t{0})
-                                .names.begin())>> : std::true_type {};
 
 }  // namespace detail
 
@@ -77,11 +69,11 @@ class Parameters {
 
   /// The parameters of a ROS 2 node.
   ///
-  /// @param interface  any shared_ptr, to const or not, to an object with has_parameter(name) and
-  ///     get_parameter(name) of rclcpp's NodeParametersInterface. Where it has list_parameters()
-  ///     and get_parameter_overrides() as well, names() lists what is set, and a parameter that was
-  ///     set from outside (launch file, command line) is found whether the node has declared it or
-  ///     not. A null pointer is no parameter at all.
+  /// @param interface  any shared_ptr, to const or not, to an object with has_parameter(),
+  ///     get_parameter() and list_parameters() of rclcpp's NodeParametersInterface. Where it has
+  ///     get_parameter_overrides() as well, a parameter that was set from outside (launch file,
+  ///     command line) is found whether the node has declared it or not. A null pointer is no
+  ///     parameter at all.
   template <class Interface,
             class = std::enable_if_t<detail::IsParametersInterface<Interface>::value>>
   Parameters(std::shared_ptr<Interface> interface) {  // NOLINT(google-explicit-constructor)
@@ -90,10 +82,7 @@ class Parameters {
       return detail::readParameter(*interface, name);
     };
     shared_ = true;
-    names_ = nullptr;
-    if constexpr (detail::CanList<Interface>::value) {
-      names_ = [interface] { return detail::setParameters(*interface); };
-    }
+    names_ = [interface] { return detail::setParameters(*interface); };
   }
 
   /// The parameters of a map from dotted name to value.
@@ -132,12 +121,10 @@ class Parameters {
 
   /// The same parameters, of which a solver must know all: initialize() throws
   /// InvalidParameterValueException for an unknown name instead of adding a warning.
-  ///
-  /// Throws InvalidParameterValueException: a source that can't list its parameters.
   Parameters strict() const;
   bool isStrict() const { return strict_; }
 
-  /// Names of the parameters that are set, sorted; empty if the source can't list them.
+  /// Names of the parameters that are set, sorted.
   std::vector<std::string> names() const;
 
   /// Whether others keep their parameters in the same place: true for a node, which has some of its
@@ -205,16 +192,6 @@ std::optional<ParameterValue> valueOf(const std::string& name, const Parameter& 
   throwUnsupportedType(name, type);
 }
 
-/// True where `bool get_parameter(name, parameter&)` exists: it answers false, and doesn't throw,
-/// for a parameter that is declared with a type but not set.
-template <class T, class Parameter, class = void>
-struct HasGetInto : std::false_type {};
-template <class T, class Parameter>
-struct HasGetInto<T, Parameter,
-                  std::enable_if_t<std::is_same_v<decltype(std::declval<T&>().get_parameter(
-                                                      std::string(), std::declval<Parameter&>())),
-                                                  bool>>> : std::true_type {};
-
 /// True where `get_parameter_overrides()` exists, whose values make a parameter.
 template <class T, class Parameter, class = void>
 struct HasOverrides : std::false_type {};
@@ -237,13 +214,10 @@ auto findParameter(Interface& interface, const std::string& name) {
     }
     return std::optional<Parameter>();
   }
-  if constexpr (HasGetInto<Interface, Parameter>::value) {
-    Parameter parameter;
-    return interface.get_parameter(name, parameter) ? std::optional<Parameter>(parameter)
-                                                    : std::optional<Parameter>();
-  } else {
-    return std::optional<Parameter>(interface.get_parameter(name));
-  }
+  // This overload doesn't throw for a parameter that is declared with a type but not set.
+  std::optional<Parameter> parameter(std::in_place);
+  if (!interface.get_parameter(name, *parameter)) parameter.reset();
+  return parameter;
 }
 
 template <class Interface>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Every quantity of the capabilities in its three forms, for the tests that hold them to the
-/// promises of all methods. Include conformance_tests.hpp, not this.
+/// Every quantity of the solver and its capabilities in its three forms, for the tests that hold them
+/// to the promises of all methods. Include conformance_tests.hpp, not this.
 #pragma once
 
 #include <functional>
@@ -45,8 +45,8 @@ struct OutputShapes {
   }
 };
 
-/// A method of a capability.
-struct CapabilityMethod {
+/// A method of the solver, or of a capability.
+struct Method {
   std::string name;
   OutputShapes shapes;
   std::function<Matrices(const State&)> by_value;
@@ -66,7 +66,58 @@ OfFrame sameWrenches(Eigen::Index count) {
   return OfFrame(ConstStates(kSixNumbers, 6, count, 1, 0));
 }
 
-inline void addMethods(const Kinematics& k, Eigen::Index n, std::vector<CapabilityMethod>& all) {
+/// Of one vector, which is what most give.
+template <class ByValue, class IntoMemory, class Batch>
+Method vectorMethod(const char* name, Eigen::Index n, const ByValue& by_value,
+                    const IntoMemory& into_memory, const Batch& batch) {
+  return {name,
+          {{}, {n}},
+          [by_value](const State& x) { return Matrices{by_value(x)}; },
+          [into_memory](const State& x, Matrices& out) { into_memory(x, out[0].col(0)); },
+          [batch](const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
+                  const BatchOutputs& out) { batch(q, qd, qdd, out.vectors[0]); }};
+}
+
+inline void addMethods(const InverseDynamicsSolver& s, Eigen::Index n, std::vector<Method>& all) {
+  using Q = const ConstStates&;
+  all.push_back(
+      {"getInertiaMatrix",
+       {{{n, n}}, {}},
+       [&s](const State& x) { return Matrices{s.getInertiaMatrix(x.q)}; },
+       [&s](const State& x, Matrices& out) { s.getInertiaMatrix(x.q, out[0]); },
+       [&s](Q q, Q, Q, const BatchOutputs& out) { s.getInertiaMatrixBatch(q, out.matrices[0]); }});
+  all.push_back(vectorMethod(
+      "getCoriolisVector", n, [&s](const State& x) { return s.getCoriolisVector(x.q, x.qd); },
+      [&s](const State& x, VectorRef c) { s.getCoriolisVector(x.q, x.qd, c); },
+      [&s](Q q, Q qd, Q, const States& c) { s.getCoriolisVectorBatch(q, qd, c); }));
+  all.push_back(vectorMethod(
+      "getFrictionVector", n, [&s](const State& x) { return s.getFrictionVector(x.q, x.qd); },
+      [&s](const State& x, VectorRef f) { s.getFrictionVector(x.q, x.qd, f); },
+      [&s](Q q, Q qd, Q, const States& f) { s.getFrictionVectorBatch(q, qd, f); }));
+  all.push_back(vectorMethod(
+      "getGravityVector", n, [&s](const State& x) { return s.getGravityVector(x.q); },
+      [&s](const State& x, VectorRef g) { s.getGravityVector(x.q, g); },
+      [&s](Q q, Q, Q, const States& g) { s.getGravityVectorBatch(q, g); }));
+  all.push_back(vectorMethod(
+      "getTorques", n, [&s](const State& x) { return s.getTorques(x.q, x.qd, x.qdd); },
+      [&s](const State& x, VectorRef tau) { s.getTorques(x.q, x.qd, x.qdd, tau); },
+      [&s](Q q, Q qd, Q qdd, const States& tau) { s.getTorquesBatch(q, qd, qdd, tau); }));
+  all.push_back({"getDynamicComponents",
+                 {{{n, n}}, {n, n}},
+                 [&s](const State& x) {
+                   const auto [H, c, g] = s.getDynamicParameters(x.q, x.qd);
+                   return Matrices{H, c, g};
+                 },
+                 [&s](const State& x, Matrices& out) {
+                   s.getDynamicComponents(x.q, x.qd, out[0], out[1].col(0), out[2].col(0));
+                 },
+                 [&s](Q q, Q qd, Q, const BatchOutputs& out) {
+                   s.getDynamicComponentsBatch(q, qd, out.matrices[0], out.vectors[0],
+                                               out.vectors[1]);
+                 }});
+}
+
+inline void addMethods(const Kinematics& k, Eigen::Index n, std::vector<Method>& all) {
   using Q = const ConstStates&;
   all.push_back({"getTipPose",
                  {{{3, 3}}, {3}},
@@ -101,28 +152,24 @@ inline void addMethods(const Kinematics& k, Eigen::Index n, std::vector<Capabili
 
 template <WrenchFrame Frame>
 void addMethods(const ExternalWrench& e, const Wrench<Frame>& w, Eigen::Index n,
-                std::vector<CapabilityMethod>& all) {
+                std::vector<Method>& all) {
   using Q = const ConstStates&;
-  all.push_back(
-      {"getExternalTorques",
-       {{}, {n}},
-       [&e, w](const State& x) { return Matrices{e.getExternalTorques(x.q, w)}; },
-       [&e, w](const State& x, Matrices& out) { e.getExternalTorques(x.q, w, out[0].col(0)); },
-       [&e](Q q, Q, Q, const BatchOutputs& out) {
-         e.getExternalTorquesBatch(q, sameWrenches<Wrenches<Frame>>(q.count), out.vectors[0]);
-       }});
-  all.push_back(
-      {"getTorques",
-       {{}, {n}},
-       [&e, w](const State& x) { return Matrices{e.getTorques(x.q, x.qd, x.qdd, w)}; },
-       [&e, w](const State& x, Matrices& out) { e.getTorques(x.q, x.qd, x.qdd, w, out[0].col(0)); },
-       [&e](Q q, Q qd, Q qdd, const BatchOutputs& out) {
-         e.getTorquesBatch(q, qd, qdd, sameWrenches<Wrenches<Frame>>(q.count), out.vectors[0]);
-       }});
+  using Same = Wrenches<Frame>;
+  all.push_back(vectorMethod(
+      "getExternalTorques", n, [&e, w](const State& x) { return e.getExternalTorques(x.q, w); },
+      [&e, w](const State& x, VectorRef tau) { e.getExternalTorques(x.q, w, tau); },
+      [&e](Q q, Q, Q, const States& tau) {
+        e.getExternalTorquesBatch(q, sameWrenches<Same>(q.count), tau);
+      }));
+  all.push_back(vectorMethod(
+      "getTorques", n, [&e, w](const State& x) { return e.getTorques(x.q, x.qd, x.qdd, w); },
+      [&e, w](const State& x, VectorRef tau) { e.getTorques(x.q, x.qd, x.qdd, w, tau); },
+      [&e](Q q, Q qd, Q qdd, const States& tau) {
+        e.getTorquesBatch(q, qd, qdd, sameWrenches<Same>(q.count), tau);
+      }));
 }
 
-inline void addMethods(const CoriolisMatrix& c, Eigen::Index n,
-                       std::vector<CapabilityMethod>& all) {
+inline void addMethods(const CoriolisMatrix& c, Eigen::Index n, std::vector<Method>& all) {
   using Q = const ConstStates&;
   all.push_back({"getCoriolisMatrix",
                  {{{n, n}}, {}},
@@ -133,7 +180,7 @@ inline void addMethods(const CoriolisMatrix& c, Eigen::Index n,
                  }});
 }
 
-inline void addMethods(const Energies& e, std::vector<CapabilityMethod>& all) {
+inline void addMethods(const Energies& e, std::vector<Method>& all) {
   using Q = const ConstStates&;
   const auto one = [](double value) { return Eigen::MatrixXd::Constant(1, 1, value).eval(); };
   all.push_back({"getKineticEnergy",
@@ -151,8 +198,7 @@ inline void addMethods(const Energies& e, std::vector<CapabilityMethod>& all) {
        [&e](Q q, Q, Q, const BatchOutputs& out) { e.getPotentialEnergyBatch(q, out.vectors[0]); }});
 }
 
-inline void addMethods(const TorqueDerivatives& d, Eigen::Index n,
-                       std::vector<CapabilityMethod>& all) {
+inline void addMethods(const TorqueDerivatives& d, Eigen::Index n, std::vector<Method>& all) {
   using Q = const ConstStates&;
   all.push_back({"getTorqueDerivatives",
                  {{{n, n}, {n, n}, {n, n}}, {}},
@@ -169,7 +215,7 @@ inline void addMethods(const TorqueDerivatives& d, Eigen::Index n,
                  }});
 }
 
-inline void addMethods(const Regressor& r, Eigen::Index n, std::vector<CapabilityMethod>& all) {
+inline void addMethods(const Regressor& r, Eigen::Index n, std::vector<Method>& all) {
   using Q = const ConstStates&;
   all.push_back({"getRegressor",
                  {{{n, 10 * n}}, {}},
@@ -180,25 +226,20 @@ inline void addMethods(const Regressor& r, Eigen::Index n, std::vector<Capabilit
                  }});
 }
 
-inline void addMethods(const ForwardDynamics& f, Eigen::Index n,
-                       std::vector<CapabilityMethod>& all) {
+inline void addMethods(const ForwardDynamics& f, Eigen::Index n, std::vector<Method>& all) {
   using Q = const ConstStates&;
   // (the third numbers of a state as torques)
-  all.push_back(
-      {"getAccelerations",
-       {{}, {n}},
-       [&f](const State& x) { return Matrices{f.getAccelerations(x.q, x.qd, x.qdd)}; },
-       [&f](const State& x, Matrices& out) { f.getAccelerations(x.q, x.qd, x.qdd, out[0].col(0)); },
-       [&f](Q q, Q qd, Q tau, const BatchOutputs& out) {
-         f.getAccelerationsBatch(q, qd, tau, out.vectors[0]);
-       }});
+  all.push_back(vectorMethod(
+      "getAccelerations", n, [&f](const State& x) { return f.getAccelerations(x.q, x.qd, x.qdd); },
+      [&f](const State& x, VectorRef qdd) { f.getAccelerations(x.q, x.qd, x.qdd, qdd); },
+      [&f](Q q, Q qd, Q tau, const States& qdd) { f.getAccelerationsBatch(q, qd, tau, qdd); }));
 }
 
-/// The methods of all capabilities that a solver of n joints has; those that need an inertia of rigid
-/// bodies, or energies, where it has these, or isn't initialized.
-inline std::vector<CapabilityMethod> capabilityMethods(const InverseDynamicsSolver& solver,
-                                                       Eigen::Index n) {
-  std::vector<CapabilityMethod> all;
+/// The methods of a solver of n joints and of all capabilities that it has; those that need an inertia
+/// of rigid bodies, or energies, where it has these, or isn't initialized.
+inline std::vector<Method> methodsOf(const InverseDynamicsSolver& solver, Eigen::Index n) {
+  std::vector<Method> all;
+  addMethods(solver, n, all);
   if (const auto* k = dynamic_cast<const Kinematics*>(&solver)) addMethods(*k, n, all);
   if (const auto* e = dynamic_cast<const ExternalWrench*>(&solver)) {
     addMethods(*e, kWrenchInRoot, n, all);
@@ -217,8 +258,8 @@ inline std::vector<CapabilityMethod> capabilityMethods(const InverseDynamicsSolv
   return all;
 }
 
-inline std::vector<CapabilityMethod> capabilityMethods(const InverseDynamicsSolver& solver) {
-  return capabilityMethods(solver, solver.jointCount());
+inline std::vector<Method> methodsOf(const InverseDynamicsSolver& solver) {
+  return methodsOf(solver, solver.jointCount());
 }
 
 /// The entries of several matrices in one column.
@@ -230,18 +271,6 @@ inline Eigen::VectorXd flat(const Matrices& matrices) {
   for (const Eigen::MatrixXd& matrix : matrices) {
     all.segment(first, matrix.size()) = flat(matrix);
     first += matrix.size();
-  }
-  return all;
-}
-
-/// quantities() and those of the capabilities.
-inline std::vector<Quantity> allQuantities(const InverseDynamicsSolver& solver, Eigen::Index n) {
-  std::vector<Quantity> all = quantities();
-  for (const CapabilityMethod& method : capabilityMethods(solver, n)) {
-    all.push_back(
-        {method.name, [by_value = method.by_value](const InverseDynamicsSolver&, const State& x) {
-           return flat(by_value(x));
-         }});
   }
   return all;
 }

@@ -27,11 +27,11 @@ inline double timeStep(const State& x) { return kDifferenceStep / x.qd.cwiseAbs(
 TEST_P(SolverConformance, CapabilitiesRefuseWrongSizes) {
   const InverseDynamicsSolver& s = *solver_;
   const Eigen::Index n = s.jointCount();
-  const auto refuses = [&](const CapabilityMethod& method, const std::function<void()>& call) {
+  const auto refuses = [&](const Method& method, const std::function<void()>& call) {
     const std::string error = errorOf<SizeMismatchException>(call);
     EXPECT_TRUE(contains(error, {method.name, "argument ", "expected "}));
   };
-  for (const CapabilityMethod& method : capabilityMethods(s)) {
+  for (const Method& method : methodsOf(s)) {
     SCOPED_TRACE(method.name);
     const Eigen::VectorXd ok = Eigen::VectorXd::Zero(n);
     const Eigen::VectorXd no = Eigen::VectorXd::Zero(n + 1);
@@ -43,7 +43,7 @@ TEST_P(SolverConformance, CapabilitiesRefuseWrongSizes) {
     const Eigen::MatrixXd two = Eigen::MatrixXd::Zero(n, 2);
     const std::size_t matrices = method.shapes.matrices.size();
     for (std::size_t i = 0; i < out.size(); ++i) {
-      CapabilityMethod wrong = method;
+      Method wrong = method;
       if (i < matrices) {
         ++wrong.shapes.matrices[i].second;
       } else {

@@ -46,8 +46,8 @@ TEST_P(SolverConformance, ResultsHaveTheSizesOfTheRobotAndAreFinite) {
   EXPECT_EQ(solver_->getFrictionVector(x.q, x.qd).size(), n);
   EXPECT_EQ(solver_->getGravityVector(x.q).size(), n);
   EXPECT_EQ(solver_->getTorques(x.q, x.qd, x.qdd).size(), n);
-  for (const Quantity& quantity : allQuantities(*solver_, n)) {
-    EXPECT_TRUE(quantity.value(*solver_, x).allFinite()) << quantity.name << toString(x);
+  for (const Method& method : methodsOf(*solver_)) {
+    EXPECT_TRUE(flat(method.by_value(x)).allFinite()) << method.name << toString(x);
   }
 }
 
@@ -55,9 +55,9 @@ TEST_P(SolverConformance, UninitializedSolverRefusesEveryMethod) {
   const auto solver = make();
   const State x = randomState();
   EXPECT_FALSE(solver->isInitialized());
-  for (const Quantity& quantity : allQuantities(*solver, x.q.size())) {
-    const std::string error = errorOf<UninitializedException>([&] { quantity.value(*solver, x); });
-    EXPECT_TRUE(contains(error, {quantity.name, "initialize()"}));
+  for (const Method& method : methodsOf(*solver, x.q.size())) {
+    const std::string error = errorOf<UninitializedException>([&] { method.by_value(x); });
+    EXPECT_TRUE(contains(error, {method.name, "initialize()"}));
   }
   errorOf<UninitializedException>([&] { solver->jointCount(); });
   errorOf<UninitializedException>([&] { solver->jointNames(); });
@@ -109,35 +109,10 @@ TEST_P(SolverConformance, WrongSizeIsRefusedNamingArgumentExpectedAndGot) {
 
 TEST_P(SolverConformance, ResultsByValueEqualResultsInMemoryOfTheCaller) {
   const InverseDynamicsSolver& s = *solver_;
-  const Eigen::Index n = s.jointCount();
   for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     // A stale entry would show: the memory is filled with NaN before each call.
-    const Eigen::VectorXd nan =
-        Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
-    Eigen::MatrixXd H = nan.replicate(1, n);
-    Eigen::VectorXd c = nan, f = nan, g = nan, tau = nan;
-    s.getInertiaMatrix(x.q, H);
-    s.getCoriolisVector(x.q, x.qd, c);
-    s.getFrictionVector(x.q, x.qd, f);
-    s.getGravityVector(x.q, g);
-    s.getTorques(x.q, x.qd, x.qdd, tau);
-    EXPECT_TRUE(identical(flat(s.getInertiaMatrix(x.q)), flat(H)));
-    EXPECT_TRUE(identical(s.getCoriolisVector(x.q, x.qd), c));
-    EXPECT_TRUE(identical(s.getFrictionVector(x.q, x.qd), f));
-    EXPECT_TRUE(identical(s.getGravityVector(x.q), g));
-    EXPECT_TRUE(identical(s.getTorques(x.q, x.qd, x.qdd), tau));
-
-    H = nan.replicate(1, n);
-    c = nan;
-    g = nan;
-    s.getDynamicComponents(x.q, x.qd, H, c, g);
-    const auto [H_value, c_value, g_value] = s.getDynamicParameters(x.q, x.qd);
-    EXPECT_TRUE(identical(flat(H_value), flat(H)));
-    EXPECT_TRUE(identical(c_value, c));
-    EXPECT_TRUE(identical(g_value, g));
-
-    for (const CapabilityMethod& method : capabilityMethods(s)) {
+    for (const Method& method : methodsOf(s)) {
       Matrices out = method.shapes.memory(std::numeric_limits<double>::quiet_NaN());
       method.into_memory(x, out);
       EXPECT_TRUE(identical(flat(method.by_value(x)), flat(out))) << method.name;
@@ -149,9 +124,7 @@ TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerDoNotAllocate) {
   if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
   const InverseDynamicsSolver& s = *solver_;
   const State x = randomState();
-  const Eigen::Index n = s.jointCount();
-  Eigen::MatrixXd H(n, n);
-  Eigen::VectorXd c(n), f(n), g(n), tau(n);
+  Eigen::VectorXd tau(s.jointCount());
 
   // The counter counts. Clang leaves out a pair of malloc and free, or new and delete, whose memory
   // isn't used; but no call of these functions by their names.
@@ -164,22 +137,12 @@ TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerDoNotAllocate) {
     call();
     return guard.count();
   };
-  EXPECT_EQ(allocations([&] { s.getInertiaMatrix(x.q, H); }), 0);
-  EXPECT_EQ(allocations([&] { s.getCoriolisVector(x.q, x.qd, c); }), 0);
-  EXPECT_EQ(allocations([&] { s.getFrictionVector(x.q, x.qd, f); }), 0);
-  EXPECT_EQ(allocations([&] { s.getGravityVector(x.q, g); }), 0);
-  EXPECT_EQ(allocations([&] { s.getDynamicComponents(x.q, x.qd, H, c, g); }), 0);
-  EXPECT_EQ(allocations([&] { s.getTorques(x.q, x.qd, x.qdd, tau); }), 0);
-  for (const CapabilityMethod& method : capabilityMethods(s)) {
+  for (const Method& method : methodsOf(s)) {
     Matrices out = method.shapes.memory();
     EXPECT_EQ(allocations([&] { method.into_memory(x, out); }), 0) << method.name;
   }
   if (const auto* motors = dynamic_cast<const MotorCurrents*>(&s)) {
     EXPECT_EQ(allocations([&] { motors->getCurrents(x.q, x.qd, x.qdd, tau); }), 0);
-    EXPECT_EQ(allocations([&] { motors->getInertiaCurrents(x.q, H); }), 0);
-    EXPECT_EQ(allocations([&] { motors->getCoriolisCurrents(x.q, x.qd, c); }), 0);
-    EXPECT_EQ(allocations([&] { motors->getGravityCurrents(x.q, g); }), 0);
-    EXPECT_EQ(allocations([&] { motors->getFrictionCurrents(x.q, x.qd, f); }), 0);
   }
   const auto* const band = dynamic_cast<const TorqueDeviation*>(&s);
   if (band != nullptr && band->hasTorqueDeviation()) {
@@ -191,12 +154,12 @@ TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
   constexpr int kThreads = 8;
   constexpr int kRounds = 20;
   const std::vector<State> states = randomStates(32);
-  const std::vector<Quantity> all = allQuantities(*solver_, solver_->jointCount());
+  const std::vector<Method> all = methodsOf(*solver_);
 
   // What one thread computes.
   std::vector<Eigen::VectorXd> expected;
   for (const State& x : states) {
-    for (const Quantity& quantity : all) expected.push_back(quantity.value(*solver_, x));
+    for (const Method& method : all) expected.push_back(flat(method.by_value(x)));
   }
 
   // Each thread begins at another state, so that different states are computed at the same time.
@@ -207,7 +170,7 @@ TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
     for (std::size_t i = 0; i < states.size() * kRounds; ++i) {
       const std::size_t k = (i + 4 * thread) % states.size();
       for (std::size_t j = 0; j < all.size(); ++j) {
-        const Eigen::VectorXd value = all[j].value(*solver_, states[k]);
+        const Eigen::VectorXd value = flat(all[j].by_value(states[k]));
         if (!identical(value, expected[k * all.size() + j])) ++different;
       }
     }
@@ -221,24 +184,24 @@ TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
 /// For each input number: the entries that change with it must become NaN with it.
 TEST_P(SolverConformance, NanGoesToEveryEntryThatDependsOnIt) {
   const InverseDynamicsSolver& s = *solver_;
-  for (const Quantity& quantity : allQuantities(s, s.jointCount())) {
+  for (const Method& method : methodsOf(s)) {
     for (Eigen::VectorXd State::*argument : {&State::q, &State::qd, &State::qdd}) {
       for (Eigen::Index j = 0; j < s.jointCount(); ++j) {
         using Flags = Eigen::Array<bool, Eigen::Dynamic, 1>;
         Flags depends, is_nan;
         for (const State& x : randomStates(4)) {
-          const Eigen::VectorXd value = quantity.value(s, x);
+          const Eigen::VectorXd value = flat(method.by_value(x));
           State changed = x, spoilt = x;
           (changed.*argument)[j] += 0.7;
           (spoilt.*argument)[j] = std::numeric_limits<double>::quiet_NaN();
-          const Eigen::VectorXd difference = quantity.value(s, changed) - value;
+          const Eigen::VectorXd difference = flat(method.by_value(changed)) - value;
           const Flags moved = difference.array().abs() > 1e-9 * sizeOf(value);
-          const Flags lost = quantity.value(s, spoilt).array().isNaN();
+          const Flags lost = flat(method.by_value(spoilt)).array().isNaN();
           depends = depends.size() == 0 ? moved : Flags(depends || moved);
           is_nan = is_nan.size() == 0 ? lost : Flags(is_nan && lost);
         }
-        EXPECT_TRUE((!depends || is_nan).all()) << quantity.name << ": entries depend on number "
-                                                << j << " of an input, and hide that it is NaN";
+        EXPECT_TRUE((!depends || is_nan).all()) << method.name << ": entries depend on number " << j
+                                                << " of an input, and hide that it is NaN";
       }
     }
   }

@@ -178,8 +178,8 @@ TEST_P(SolverConformance, BodyEqualsAFixedLinkOfTheDescription) {
   }
 
   // The capabilities too, of which derivatives and accelerations are far greater.
-  const std::vector<CapabilityMethod> own = capabilityMethods(*solver_);
-  const std::vector<CapabilityMethod> of_link = capabilityMethods(*described);
+  const std::vector<Method> own = methodsOf(*solver_);
+  const std::vector<Method> of_link = methodsOf(*described);
   ASSERT_EQ(own.size(), of_link.size());
   for (const State& x : states) {
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -415,11 +415,11 @@ TEST_P(SolverConformance, CallsDoNotAllocateWhileAnotherThreadChangesTheRobot) {
   EXPECT_GT(allocations_of_changes, 0) << "allocations aren't counted";
 }
 
-/// Quantities of single states, capabilities' too, and those of a batch as one result.
+/// Quantities of single states, and those of a batch as one result.
 inline std::vector<Eigen::VectorXd> resultsOf(const InverseDynamicsSolver& solver,
                                               const std::vector<State>& states) {
-  std::vector<Eigen::VectorXd> results = fingerprint(solver, states);
-  for (const CapabilityMethod& method : capabilityMethods(solver)) {
+  std::vector<Eigen::VectorXd> results;
+  for (const Method& method : methodsOf(solver)) {
     for (const State& x : states) {
       for (const Eigen::MatrixXd& matrix : method.by_value(x)) results.push_back(flat(matrix));
     }

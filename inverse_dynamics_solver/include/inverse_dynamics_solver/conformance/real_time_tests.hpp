@@ -21,32 +21,16 @@ namespace inverse_dynamics_solver::conformance {
 /// Calls every method that writes into memory of the caller.
 class CallsOfALoop {
  public:
-  explicit CallsOfALoop(const InverseDynamicsSolver& solver)
-      : solver_(solver),
-        H_(solver.jointCount(), solver.jointCount()),
-        c_(solver.jointCount()),
-        f_(c_),
-        g_(c_),
-        tau_(c_),
-        methods_(capabilityMethods(solver)) {
-    for (const CapabilityMethod& method : methods_) outputs_.push_back(method.shapes.memory());
+  explicit CallsOfALoop(const InverseDynamicsSolver& solver) : methods_(methodsOf(solver)) {
+    for (const Method& method : methods_) outputs_.push_back(method.shapes.memory());
   }
 
   void operator()(const State& x) {
-    solver_.getInertiaMatrix(x.q, H_);
-    solver_.getCoriolisVector(x.q, x.qd, c_);
-    solver_.getFrictionVector(x.q, x.qd, f_);
-    solver_.getGravityVector(x.q, g_);
-    solver_.getDynamicComponents(x.q, x.qd, H_, c_, g_);
-    solver_.getTorques(x.q, x.qd, x.qdd, tau_);
     for (std::size_t i = 0; i < methods_.size(); ++i) methods_[i].into_memory(x, outputs_[i]);
   }
 
  private:
-  const InverseDynamicsSolver& solver_;
-  Eigen::MatrixXd H_;
-  Eigen::VectorXd c_, f_, g_, tau_;
-  std::vector<CapabilityMethod> methods_;
+  std::vector<Method> methods_;
   std::vector<Matrices> outputs_;
 };
 
