@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The capabilities of the engine's solvers.
+// What is more than a call of FastModel.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -24,25 +24,6 @@ Eigen::Matrix<double, 6, 1> inRootAxes(const Eigen::Matrix3d& R, const ConstVect
 
 }  // namespace
 
-// ---------------------------------------------------------------- tip
-
-void InverseDynamicsSolverRigidBody::computeTipPose(const ConstVectorRef& q,
-                                                    Transform<double>& pose) const {
-  // (Payload and gravity change nothing about it: any robot will do.)
-  initialRobot().fast.tipPose(q.data(), pose.R.data(), pose.p.data());
-}
-
-void InverseDynamicsSolverRigidBody::computeTipJacobian(const ConstVectorRef& q,
-                                                        MatrixRef J) const {
-  initialRobot().fast.tipJacobian(q.data(), J.data(), J.outerStride());
-}
-
-void InverseDynamicsSolverRigidBody::computeTipJacobianDerivative(const ConstVectorRef& q,
-                                                                  const ConstVectorRef& qd,
-                                                                  MatrixRef dJ) const {
-  initialRobot().fast.tipJacobianDerivative(q.data(), qd.data(), dJ.data(), dJ.outerStride());
-}
-
 void InverseDynamicsSolverRigidBody::computeExternalTorques(const ConstVectorRef& q,
                                                             WrenchFrame frame,
                                                             const ConstVectorRef& wrench,
@@ -56,23 +37,6 @@ void InverseDynamicsSolverRigidBody::computeExternalTorques(const ConstVectorRef
   Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, FastModel::kMaxJoints> J(6, q.size());
   computeTipJacobian(q, J);
   tau.noalias() = J.transpose().lazyProduct(w);
-}
-
-// ---------------------------------------------------------------- dynamics
-
-void InverseDynamicsSolverRigidBody::computeCoriolisMatrix(const ConstVectorRef& q,
-                                                           const ConstVectorRef& qd,
-                                                           MatrixRef C) const {
-  currentRobot()->fast.coriolisMatrix(q.data(), qd.data(), C.data(), C.outerStride());
-}
-
-double InverseDynamicsSolverRigidBody::computeKineticEnergy(const ConstVectorRef& q,
-                                                            const ConstVectorRef& qd) const {
-  return chain_dynamics::kineticEnergy(currentRobot()->model, q, qd);
-}
-
-double InverseDynamicsSolverRigidBody::computePotentialEnergy(const ConstVectorRef& q) const {
-  return chain_dynamics::potentialEnergy(currentRobot()->model, q);
 }
 
 void InverseDynamicsSolverRigidBody::computeTorqueDerivatives(const ConstVectorRef& q,
@@ -90,38 +54,6 @@ void InverseDynamicsSolverRigidBody::computeTorqueDerivatives(const ConstVectorR
   }
   chain_dynamics::torqueDerivatives(robot->model, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
   chain_dynamics::addFrictionDerivatives(robot->model, q, qd, dtau_dq, dtau_dqd);
-}
-
-void InverseDynamicsSolverRigidBody::computeRegressor(const ConstVectorRef& q,
-                                                      const ConstVectorRef& qd,
-                                                      const ConstVectorRef& qdd,
-                                                      MatrixRef Y) const {
-  currentRobot()->fast.regressor(q.data(), qd.data(), qdd.data(), Y.data(), Y.outerStride());
-}
-
-void InverseDynamicsSolverRigidBody::computeAccelerations(const ConstVectorRef& q,
-                                                          const ConstVectorRef& qd,
-                                                          const ConstVectorRef& tau,
-                                                          VectorRef qdd) const {
-  currentRobot()->fast.forwardDynamics(q.data(), qd.data(), tau.data(), qdd.data());
-}
-
-// ---------------------------------------------------------------- many states
-
-void InverseDynamicsSolverRigidBody::computeTipPoseBatch(const ConstStates& q,
-                                                         const StridedMatrices& R,
-                                                         const States& p) const {
-  initialRobot().fast.tipPoseBatch(q, R, p);
-}
-
-void InverseDynamicsSolverRigidBody::computeTipJacobianBatch(const ConstStates& q,
-                                                             const StridedMatrices& J) const {
-  initialRobot().fast.tipJacobianBatch(q, J);
-}
-
-void InverseDynamicsSolverRigidBody::computeTipJacobianDerivativeBatch(
-    const ConstStates& q, const ConstStates& qd, const StridedMatrices& dJ) const {
-  initialRobot().fast.tipJacobianDerivativeBatch(q, qd, dJ);
 }
 
 void InverseDynamicsSolverRigidBody::computeExternalTorquesBatch(const ConstStates& q,
@@ -151,21 +83,6 @@ void InverseDynamicsSolverRigidBody::computeExternalTorquesBatch(const ConstStat
   }
 }
 
-// (The states of a batch belong to one robot, so it is read once.)
-
-void InverseDynamicsSolverRigidBody::computeCoriolisMatrixBatch(const ConstStates& q,
-                                                                const ConstStates& qd,
-                                                                const StridedMatrices& C) const {
-  currentRobot()->fast.coriolisMatrixBatch(q, qd, C);
-}
-
-void InverseDynamicsSolverRigidBody::computeTorqueDerivativesBatch(
-    const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
-    const StridedMatrices& dtau_dq, const StridedMatrices& dtau_dqd,
-    const StridedMatrices& dtau_dqdd) const {
-  currentRobot()->fast.torqueDerivativesBatch(q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
-}
-
 void InverseDynamicsSolverRigidBody::computeRegressorBatch(const ConstStates& q,
                                                            const ConstStates& qd,
                                                            const ConstStates& qdd,
@@ -188,13 +105,6 @@ void InverseDynamicsSolverRigidBody::computeRegressorBatch(const ConstStates& q,
       }
     }
   }
-}
-
-void InverseDynamicsSolverRigidBody::computeAccelerationsBatch(const ConstStates& q,
-                                                               const ConstStates& qd,
-                                                               const ConstStates& tau,
-                                                               const States& qdd) const {
-  currentRobot()->fast.forwardDynamicsBatch(q, qd, tau, qdd);
 }
 
 }  // namespace v2

@@ -104,65 +104,132 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
 
   const InverseDynamicsSolver& torqueSolver() const override { return *this; }
 
-  void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const override;
+  void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const override {
+    withCurrentRobot([&](const ReadyModel& robot) {
+      robot.fast.inertiaMatrix(q.data(), H.data(), H.outerStride());
+    });
+  }
   void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
-                             VectorRef c) const override;
-  void computeGravityVector(const ConstVectorRef& q, VectorRef g) const override;
+                             VectorRef c) const override {
+    withCurrentRobot(
+        [&](const ReadyModel& robot) { robot.fast.coriolisVector(q.data(), qd.data(), c.data()); });
+  }
+  void computeGravityVector(const ConstVectorRef& q, VectorRef g) const override {
+    withCurrentRobot(
+        [&](const ReadyModel& robot) { robot.fast.gravityVector(q.data(), g.data()); });
+  }
   void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
-                       VectorRef f) const override;
+                       VectorRef f) const override {
+    withCurrentRobot(
+        [&](const ReadyModel& robot) { robot.fast.frictionVector(q.data(), qd.data(), f.data()); });
+  }
   void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
-                                VectorRef c, VectorRef g) const override;
+                                VectorRef c, VectorRef g) const override {
+    withCurrentRobot([&](const ReadyModel& robot) {
+      robot.fast.dynamicComponents(q.data(), qd.data(), H.data(), H.outerStride(), c.data(),
+                                   g.data());
+    });
+  }
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
-                      VectorRef tau) const override;
-  void computeInertiaMatrixBatch(const ConstStates& q, const StridedMatrices& H) const override;
+                      VectorRef tau) const override {
+    withCurrentRobot([&](const ReadyModel& robot) {
+      robot.fast.torques(q.data(), qd.data(), qdd.data(), tau.data());
+    });
+  }
+
+  // The states of a batch belong to one robot, so it is read once.
+  void computeInertiaMatrixBatch(const ConstStates& q, const StridedMatrices& H) const override {
+    currentRobot()->fast.inertiaMatrixBatch(q, H);
+  }
   void computeCoriolisVectorBatch(const ConstStates& q, const ConstStates& qd,
-                                  const States& c) const override;
+                                  const States& c) const override {
+    currentRobot()->fast.coriolisVectorBatch(q, qd, c);
+  }
   void computeFrictionBatch(const ConstStates& q, const ConstStates& qd,
-                            const States& f) const override;
-  void computeGravityVectorBatch(const ConstStates& q, const States& g) const override;
+                            const States& f) const override {
+    currentRobot()->fast.frictionVectorBatch(q, qd, f);
+  }
+  void computeGravityVectorBatch(const ConstStates& q, const States& g) const override {
+    currentRobot()->fast.gravityVectorBatch(q, g);
+  }
   void computeDynamicComponentsBatch(const ConstStates& q, const ConstStates& qd,
                                      const StridedMatrices& H, const States& c,
-                                     const States& g) const override;
+                                     const States& g) const override {
+    currentRobot()->fast.dynamicComponentsBatch(q, qd, H, c, g);
+  }
   void computeTorquesBatch(const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
-                           const States& tau) const override;
+                           const States& tau) const override {
+    currentRobot()->fast.torquesBatch(q, qd, qdd, tau);
+  }
 
   /// @name Capabilities
   /// @{
+
+  // Payload and gravity change nothing about the tip: any robot will do.
   void computeTipPose(const ConstVectorRef& q,
-                      chain_dynamics::Transform<double>& pose) const override;
-  void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const override;
+                      chain_dynamics::Transform<double>& pose) const override {
+    initialRobot().fast.tipPose(q.data(), pose.R.data(), pose.p.data());
+  }
+  void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const override {
+    initialRobot().fast.tipJacobian(q.data(), J.data(), J.outerStride());
+  }
   void computeTipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                    MatrixRef dJ) const override;
+                                    MatrixRef dJ) const override {
+    initialRobot().fast.tipJacobianDerivative(q.data(), qd.data(), dJ.data(), dJ.outerStride());
+  }
+  void computeTipPoseBatch(const ConstStates& q, const StridedMatrices& R,
+                           const States& p) const override {
+    initialRobot().fast.tipPoseBatch(q, R, p);
+  }
+  void computeTipJacobianBatch(const ConstStates& q, const StridedMatrices& J) const override {
+    initialRobot().fast.tipJacobianBatch(q, J);
+  }
+  void computeTipJacobianDerivativeBatch(const ConstStates& q, const ConstStates& qd,
+                                         const StridedMatrices& dJ) const override {
+    initialRobot().fast.tipJacobianDerivativeBatch(q, qd, dJ);
+  }
   void computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
                               const ConstVectorRef& wrench, VectorRef tau) const override;
+  void computeExternalTorquesBatch(const ConstStates& q, WrenchFrame frame,
+                                   const ConstStates& wrenches, const States& tau) const override;
+
   void computeCoriolisMatrix(const ConstVectorRef& q, const ConstVectorRef& qd,
-                             MatrixRef C) const override;
-  double computeKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const override;
-  double computePotentialEnergy(const ConstVectorRef& q) const override;
+                             MatrixRef C) const override {
+    currentRobot()->fast.coriolisMatrix(q.data(), qd.data(), C.data(), C.outerStride());
+  }
+  double computeKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const override {
+    return chain_dynamics::kineticEnergy(currentRobot()->model, q, qd);
+  }
+  double computePotentialEnergy(const ConstVectorRef& q) const override {
+    return chain_dynamics::potentialEnergy(currentRobot()->model, q);
+  }
   void computeTorqueDerivatives(const ConstVectorRef& q, const ConstVectorRef& qd,
                                 const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
                                 MatrixRef dtau_dqdd) const override;
   void computeRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
-                        const ConstVectorRef& qdd, MatrixRef Y) const override;
+                        const ConstVectorRef& qdd, MatrixRef Y) const override {
+    currentRobot()->fast.regressor(q.data(), qd.data(), qdd.data(), Y.data(), Y.outerStride());
+  }
   void computeAccelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
-                            const ConstVectorRef& tau, VectorRef qdd) const override;
-  void computeTipPoseBatch(const ConstStates& q, const StridedMatrices& R,
-                           const States& p) const override;
-  void computeTipJacobianBatch(const ConstStates& q, const StridedMatrices& J) const override;
-  void computeTipJacobianDerivativeBatch(const ConstStates& q, const ConstStates& qd,
-                                         const StridedMatrices& dJ) const override;
-  void computeExternalTorquesBatch(const ConstStates& q, WrenchFrame frame,
-                                   const ConstStates& wrenches, const States& tau) const override;
+                            const ConstVectorRef& tau, VectorRef qdd) const override {
+    currentRobot()->fast.forwardDynamics(q.data(), qd.data(), tau.data(), qdd.data());
+  }
   void computeCoriolisMatrixBatch(const ConstStates& q, const ConstStates& qd,
-                                  const StridedMatrices& C) const override;
+                                  const StridedMatrices& C) const override {
+    currentRobot()->fast.coriolisMatrixBatch(q, qd, C);
+  }
   void computeTorqueDerivativesBatch(const ConstStates& q, const ConstStates& qd,
                                      const ConstStates& qdd, const StridedMatrices& dtau_dq,
                                      const StridedMatrices& dtau_dqd,
-                                     const StridedMatrices& dtau_dqdd) const override;
+                                     const StridedMatrices& dtau_dqdd) const override {
+    currentRobot()->fast.torqueDerivativesBatch(q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
+  }
   void computeRegressorBatch(const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
                              const StridedMatrices& Y) const override;
   void computeAccelerationsBatch(const ConstStates& q, const ConstStates& qd,
-                                 const ConstStates& tau, const States& qdd) const override;
+                                 const ConstStates& tau, const States& qdd) const override {
+    currentRobot()->fast.forwardDynamicsBatch(q, qd, tau, qdd);
+  }
   /// @}
 
   bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
