@@ -55,43 +55,19 @@ TEST(Dual, AlgebraIsThatOfDerivatives) {
 }
 
 TEST(Dual, FunctionsHaveTheirDerivatives) {
+  using std::abs;
+  using std::cos;
+  using std::exp;
+  using std::sin;
+  using std::sqrt;
+  using std::tanh;
   for (const double at : {0.4, 0.9, 2.2}) {
-    expectDerivative(
-        [](const auto& a) {
-          using std::sin;
-          return sin(a);
-        },
-        at);
-    expectDerivative(
-        [](const auto& a) {
-          using std::cos;
-          return cos(a);
-        },
-        at);
-    expectDerivative(
-        [](const auto& a) {
-          using std::exp;
-          return exp(a);
-        },
-        at);
-    expectDerivative(
-        [](const auto& a) {
-          using std::tanh;
-          return tanh(a);
-        },
-        at);
-    expectDerivative(
-        [](const auto& a) {
-          using std::sqrt;
-          return sqrt(a);
-        },
-        at);
-    expectDerivative(
-        [](const auto& a) {
-          using std::abs;
-          return abs(-a);
-        },
-        at);
+    expectDerivative([](const auto& a) { return sin(a); }, at);
+    expectDerivative([](const auto& a) { return cos(a); }, at);
+    expectDerivative([](const auto& a) { return exp(a); }, at);
+    expectDerivative([](const auto& a) { return tanh(a); }, at);
+    expectDerivative([](const auto& a) { return sqrt(a); }, at);
+    expectDerivative([](const auto& a) { return abs(-a); }, at);
   }
 }
 
