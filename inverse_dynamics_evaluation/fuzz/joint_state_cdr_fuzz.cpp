@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "checks.hpp"
+#include "joint_state_decoder.hpp"
 #include "joint_state_encoder.hpp"
-#include "joint_states.hpp"
 
 namespace inverse_dynamics_evaluation::fuzz {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "joint_states.hpp"
-
 #include <gmock/gmock.h>
 
 #include <initializer_list>
@@ -9,6 +7,7 @@
 
 #include "error_of.hpp"
 #include "joint_state_block.hpp"
+#include "joint_state_decoder.hpp"
 #include "joint_state_encoder.hpp"
 
 namespace inverse_dynamics_evaluation::joint_states_test {

@@ -257,8 +257,8 @@ Evaluated evaluate(const SolverObject& solver, const py::object& motion, const O
   if (py::isinstance<evaluation::Recording>(motion)) {
     const auto& recording = motion.cast<const evaluation::Recording&>();
     const py::gil_scoped_release release;
-    return evaluation::evaluate(*recording.jointStates(options.topic), given.source, *shared,
-                                options);
+    return evaluation::evaluate(*recording.jointStates(options.topic, given.source), given.source,
+                                *shared, options);
   }
   const Log log(motion);
   if (log.effort.size() == 0) {

@@ -154,7 +154,8 @@ std::shared_ptr<SampleTable> readSamples(const Recording& recording, const PathT
   options.joints_option = "--joints";
   const py::gil_scoped_release release;
   auto table = std::make_shared<SampleTable>();
-  recordings::readTable(*recording.jointStates(topic.bytes), options, *table, telling(progress));
+  recordings::readTable(*recording.jointStates(topic.bytes, options), options, *table,
+                        telling(progress));
   return table;
 }
 
@@ -270,6 +271,16 @@ void bindRecording(py::module_& module) {
             return textOf(recording.topicOfType(type, topic.bytes));
           },
           py::arg("message_type"), py::arg("topic") = "")
+      .def(
+          "topics_with_joints",
+          [](const Recording& recording, const PathText& usual,
+             const std::vector<std::string>& joints) {
+            recordings::RecordingOptions options;
+            options.joints = joints;
+            return textOf(recording.topicsWithJoints(usual.bytes, options));
+          },
+          py::arg("usual"), py::arg("joints"),
+          "The usual topic of joint states, or those that have all joints where it hasn't.")
       .def(
           "expected_messages",
           [](const Recording& recording, const PathText& topic) {

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import STORE, joint_log, joint_state, write_messages
+from conftest import STORE, joint_log, write_messages
 from rosbags.rosbag2 import Reader
 
 from inverse_dynamics.data.bags import (
@@ -84,24 +84,6 @@ def test_progress_counts_messages_to_the_end(bag):
     calls = []
     read_joint_log(bag, progress=lambda *call: calls.append(call))
     assert calls[-1] == ("reading", 50, 50)
-
-
-# Which joints, which messages.
-
-
-def test_joints_that_arrive_in_several_messages_are_not_called_misnamed(tmp_path):
-    apart = [
-        joint_state([name], [0.0], [0.0], [0.0], (k + 1) * 10**7)
-        for k in range(3)
-        for name in ("joint_1", "joint_2")
-    ]
-    write_messages(tmp_path / "bag", apart)
-    text = fails(
-        tmp_path / "bag",
-        "missing: joint_2; joints that arrive in several messages aren't merged: record a topic that has",
-        joints=["joint_1", "joint_2"],
-    )
-    assert "--joints" not in text
 
 
 # Which time.

@@ -61,6 +61,9 @@ class JointStateSource {
 
   /// File and topic, for error texts: `recording: /joint_states`.
   virtual std::string where() const = 0;
+
+  /// How samples were made of messages, after the last one; empty: as they are.
+  virtual std::string note() const { return ""; }
 };
 
 }  // namespace v2

@@ -23,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <inverse_dynamics_evaluation/joint_state_source.hpp>
+#include <inverse_dynamics_evaluation/sample_table.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -89,6 +90,7 @@ class Recording {
   std::vector<Topic> topics() const;
 
   /// The given topic, if it has this type; none given: the only topic of this type with messages.
+  /// Several topics of joint states are joined by `+`.
   ///
   /// @throws RecordingError: no such topic, several, or another type; the text lists the topics.
   std::string topicOfType(const std::string& type, const std::string& topic = "") const;
@@ -109,6 +111,23 @@ class Recording {
   ///
   /// @throws RecordingError: as topicOfType(). The source throws at a message that can't be decoded.
   std::unique_ptr<JointStateSource> jointStates(const std::string& topic = "") const;
+
+  /// Samples of all the joints, of a topic or of several, joined by `+`.
+  ///
+  /// Where messages have some of the joints each, or some of the fields, they are merged by time:
+  /// samples have the times of the slowest messages; numbers of the others lie on straight lines
+  /// between the two around that time. A sample is left out where these are further apart than 1.5
+  /// times the slowest messages usually are. JointStateSource::note() says so.
+  ///
+  /// @throws RecordingError: as above; some number on none of several topics, or on two; messages
+  ///         at the same times are never there.
+  std::unique_ptr<JointStateSource> jointStates(const std::string& topic,
+                                                const RecordingOptions& options) const;
+
+  /// The usual topic, unless others alone or together have all the joints where it hasn't.
+  ///
+  /// @return topics joined by `+`. @throws RecordingError: as jointStates() does.
+  std::string topicsWithJoints(const std::string& usual, const RecordingOptions& options) const;
 
  private:
   std::shared_ptr<const RecordingContent> content_;

@@ -12,7 +12,9 @@
 #include <system_error>
 #include <utility>
 
-#include "joint_states.hpp"
+#include "joint_state_decoder.hpp"
+#include "merged_joint_states.hpp"
+#include "messages.hpp"
 #include "recording_content.hpp"
 #include "unpack.hpp"
 
@@ -117,6 +119,36 @@ void requireFiles(const std::vector<std::string>& files) {
   if (!missing.empty()) throw DamageError("some of its files are missing: " + missing);
 }
 
+// Topics that are joined by +, which may also be in a name.
+std::vector<std::string> partsOf(const Metadata& metadata, const std::string& topic) {
+  std::vector<std::string> parts;
+  const bool whole = std::any_of(metadata.connections.begin(), metadata.connections.end(),
+                                 [&](const Connection& there) { return there.topic == topic; });
+  std::size_t begin = 0;
+  for (std::size_t at = topic.find('+'); !whole && at != std::string::npos;
+       at = topic.find('+', begin)) {
+    parts.push_back(topic.substr(begin, at - begin));
+    begin = at + 1;
+  }
+  parts.push_back(topic.substr(begin));
+  return parts;
+}
+
+// Whether the first message with any of the joints has all of them, with the fields that are needed.
+bool startsWithAll(JointStateSource& source, const RecordingOptions& options) {
+  if (options.joints.empty()) return true;
+  JointMatching matching(options.joints);
+  JointSample sample;
+  auto found = JointMatching::Found::kNone;
+  while (found == JointMatching::Found::kNone && source.next(sample)) {
+    found = matching.match(*sample.names);
+  }
+  source.rewind();
+  const bool filled = sample.position.size > 0 && sample.velocity.size > 0 &&
+                      (sample.effort.size > 0 || !options.effort_required);
+  return found == JointMatching::Found::kAll && filled;
+}
+
 }  // namespace
 
 std::string name(Storage storage) { return storage == Storage::kMcap ? "mcap" : "sqlite3"; }
@@ -184,6 +216,11 @@ std::string Recording::topicOfType(const std::string& type, const std::string& t
     if (one.type == type && one.messages > 0) filled.push_back(one.name);
   }
   const std::string& where = content_->path;
+  const std::vector<std::string> parts = partsOf(*content_, topic);
+  if (type == kJointState && parts.size() > 1) {
+    for (const std::string& part : parts) topicOfType(type, part);
+    return topic;
+  }
   if (there.empty()) {
     throw RecordingError(where + ": is an empty recording: it has no topic; record it again");
   }
@@ -207,21 +244,69 @@ std::string Recording::topicOfType(const std::string& type, const std::string& t
 
 std::int64_t Recording::expectedMessages(const std::string& topic) const {
   std::int64_t messages = 0;
-  for (const Connection& connection : content_->connections) {
-    if (connection.topic == topic) messages += connection.messages;
+  for (const std::string& part : partsOf(*content_, topic)) {
+    for (const Connection& connection : content_->connections) {
+      if (connection.topic == part) messages += connection.messages;
+    }
   }
   return messages;
 }
 
 std::unique_ptr<MessageSource> Recording::messages(const std::string& topic) const {
-  return messagesOf(content_, topic);
+  return std::make_unique<Messages>(content_, topic);
 }
 
-std::unique_ptr<MessageSource> Recording::allMessages() const { return messagesOf(content_, ""); }
+std::unique_ptr<MessageSource> Recording::allMessages() const {
+  return std::make_unique<Messages>(content_, "");
+}
 
 std::unique_ptr<JointStateSource> Recording::jointStates(const std::string& topic) const {
   const std::string chosen = topicOfType(kJointState, topic);
-  return jointStatesOf(messages(chosen), path() + ": " + chosen, expectedMessages(chosen));
+  return std::make_unique<JointStates>(messages(chosen), path() + ": " + chosen,
+                                       expectedMessages(chosen));
+}
+
+std::unique_ptr<JointStateSource> Recording::jointStates(const std::string& topic,
+                                                         const RecordingOptions& options) const {
+  const std::string chosen = topicOfType(kJointState, topic);
+  const std::vector<std::string> topics = partsOf(*content_, chosen);
+  const auto open = [this](const std::string& one) { return jointStates(one); };
+  if (topics.size() == 1) {
+    auto source = jointStates(chosen);
+    if (startsWithAll(*source, options)) return source;
+  }
+  Complementary found = complementary(streamsOf(topics, open), options, path());
+  if (topics.size() == 1 && !found.missing.empty()) return jointStates(chosen);
+  for (const std::string& one : topics) {
+    if (found.missing.empty() && found.has(one)) continue;
+    throw RecordingError(path() + ": " + chosen + ": expected " +
+                         (found.has(one) ? found.missing : "some of the joints on " + one) +
+                         ", got none; name other topics with --topic, joined by +");
+  }
+  return merged(std::move(found.streams), open, options, path());
+}
+
+std::string Recording::topicsWithJoints(const std::string& usual,
+                                        const RecordingOptions& options) const {
+  const auto open = [this](const std::string& one) { return jointStates(one); };
+  std::vector<std::string> topics, complete;
+  for (const Topic& one : this->topics()) {
+    if (one.type == kJointState && one.messages > 0) topics.push_back(one.name);
+  }
+  if (topics.size() < 2) return usual;
+  for (const std::string& one : topics) {
+    if (!startsWithAll(*jointStates(one), options)) continue;
+    if (one == usual) return usual;
+    complete.push_back(one);
+  }
+  if (!complete.empty()) return complete.size() == 1 ? complete.front() : usual;
+  const Complementary found = complementary(streamsOf(topics, open), options, path());
+  if (!found.missing.empty()) return usual;
+  std::string joined;
+  for (const std::string& one : topics) {
+    if (found.has(one)) joined += (joined.empty() ? "" : "+") + one;
+  }
+  return joined;
 }
 
 }  // namespace v2

@@ -62,9 +62,10 @@ def read_recording(
     """Samples of a motion: time, positions, velocities, efforts, accelerations where there are any.
 
     path: a table (.csv, .tsv, .txt, .parquet, .npz, .npy, .mat), arrays by name, else a recording of ROS.
-    joints: names, in the order wanted; none: those of the recording. topic, of a bag; none: usual_topic if
-    it is there, else the only one of joint states, else the only one of trajectories if there are no joint
-    states. clock: which stamp of messages is the time. form: what names don't say.
+    joints: names, in the order wanted; none: those of the recording. topic, of a bag, or several joined by +;
+    none: usual_topic if it is there, else the only one of joint states, else the only one of trajectories
+    if there are no joint states, but other ones or several together if these have all the joints alone.
+    clock: which stamp of messages is the time. form: what names don't say.
 
     Raises BagError.
     """
@@ -115,7 +116,7 @@ def open_motion(
     types = {t.name: t.message_type for t in topics if t.message_count or t.name == topic}
     types = types or {t.name: t.message_type for t in topics}
     if not topic:
-        topic = _topic(types, usual_topic)
+        topic = recording.topics_with_joints(_topic(types, usual_topic), list(joints))
     if types.get(topic) == joint_trajectories.MESSAGE_TYPE:
         trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
         log = joint_trajectories.joint_log_of(trajectories, joints, clock, topic, recording.storage)
@@ -198,22 +199,23 @@ def _positions(
         log = read_ros1_log(path, topic=topic)
         yield log.joint_names, factors * log.q
         return
-    motion = open_motion(
-        path,
-        (),
-        topic=topic,
-        usual_topic=usual_topic,
-        clock="auto",
-        form=PLAIN,
-        progress=no_progress,
-    )
-    if isinstance(motion, JointLog):
-        return
+    recording = bags.open_recording(path)
+    there = {t.name: t for t in bags.topics_of(recording) if t.message_type == bags.MESSAGE_TYPE}
+    usual = [usual_topic] if usual_topic in there else there
+    for name in topic.split("+") if topic else usual:
+        if name in there:
+            for names, positions in _positions_of_topic(recording, name, joints):
+                yield names, factors * positions
+
+
+def _positions_of_topic(
+    recording: bags.Recording, topic: str, joints: Sequence[str]
+) -> Iterator[tuple[tuple[str, ...], Floats]]:
     messages, published = 0, False
-    for block in motion.recording.joint_states(motion.topic):
+    for block in recording.joint_states(topic):
         names, positions = block[0], block[4]
         if positions.shape[1:] == (len(names),):
-            yield names, factors * positions
+            yield names, positions
         messages += len(positions)
         published = published or not set(joints).isdisjoint(names)
         if messages > _PUBLISHED_BY and not published:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics._core import Accelerations, Effort, JointError, joint_errors
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.data.bags import topics_of
 from inverse_dynamics.data.joint_log import JointLog, check_clock
 from inverse_dynamics.data.recordings import open_motion
 from inverse_dynamics.data.table_logs import LogFormat
@@ -212,8 +213,10 @@ def evaluate(
 
 def _topic_notes(bag: Path, motion: JointLog | JointStateTopic, expected: str) -> list[str]:
     """That a recording has its joint states on another topic, where it has just one."""
-    if isinstance(motion, JointLog) or motion.topic == expected:
+    if isinstance(motion, JointLog) or motion.topic == expected or "+" in motion.topic:
         return []
+    if expected in (topic.name for topic in topics_of(motion.recording)):
+        return [f"{expected} lacks joints, efforts or velocities: {motion.topic} is taken"]
     return [f"{bag} has no topic {expected}: its only one of joint states is {motion.topic}"]
 
 

@@ -249,7 +249,11 @@ _SHARED = dict(
             "mass, center_of_mass, inertia and frame (docs/add_a_robot.md)",
             payload,
         ),
-        _entry("--topic NAME", "topic of the joint states, or of the trajectory"),
+        _entry(
+            "--topic NAME",
+            "topic of the joint states, or of the trajectory; several of joint states, joined by +, "
+            "are merged by time",
+        ),
         _entry(
             "--effort-is MEANING",
             f"meaning of the recorded efforts. {_meanings(EFFORT_CHOICES)}",
