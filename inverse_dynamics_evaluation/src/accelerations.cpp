@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "checks.hpp"
-#include "examination.hpp"
 #include "figures.hpp"
 #include "filtering.hpp"
 #include "pi.hpp"
@@ -82,7 +81,8 @@ void mirrorEnds(Columns samples, Index count) {
   }
 }
 
-}  // namespace
+// What a filter of this order needs, of which each end is continued.
+constexpr Index leastSamples(int order) { return 3 * (order + 1) + 1; }
 
 void requireFilter(double sampling_frequency, double cutoff, int order) {
   constexpr int kGreatestOrder = 12;
@@ -103,11 +103,14 @@ void requireFilter(double sampling_frequency, double cutoff, int order) {
   }
 }
 
+// Forwards, then backwards, each row; starts in the steady state of the first value at either end.
 void zeroPhase(Columns samples, double cutoff_over_sampling, int order) {
   const std::vector<Section> sections = butterworth(order, cutoff_over_sampling);
   for (const Section& section : sections) filter(section, samples, 0, 1);
   for (const Section& section : sections) filter(section, samples, samples.cols() - 1, -1);
 }
+
+}  // namespace
 
 double lowPassGain(double frequency, double cutoff, double sampling_frequency, int order) {
   if (frequency >= sampling_frequency / 2) {
@@ -151,6 +154,7 @@ OwnedMatrix lowPass(const ConstColumns& samples, double sampling_frequency, doub
 namespace {
 
 constexpr Index kCoefficients = 4;  // of a cubic
+constexpr Index kLeastFit = 6;  // samples that an end's cubic is fitted to, if there are as many
 
 // Powers of the instants, in units of the fitted length; one row per instant.
 MatrixXd powers(const Eigen::ArrayXd& instants) {
@@ -161,8 +165,12 @@ MatrixXd powers(const Eigen::ArrayXd& instants) {
   return result;
 }
 
-}  // namespace
-
+// The `count` samples beyond the first one, the nearest first, by the cubic that fits best there.
+//
+// The point reflection of lowPass() keeps value and slope, but the noise of the last sample becomes a
+// step of twice its size, and the curvature changes its sign. A cubic averages the noise and goes on
+// with slope and curvature. Weights fall from one at the first sample to zero behind the last (cos^2
+// of the amplitude). docs/accuracy.md has the errors at the ends.
 MatrixXd beyondEnd(const ConstColumns& samples, Index count) {
   const Index fit = samples.cols();
   const auto length = static_cast<double>(fit);
@@ -176,6 +184,8 @@ MatrixXd beyondEnd(const ConstColumns& samples, Index count) {
       Eigen::LDLT<Eigen::Matrix4d>(normal).solve(weighted.transpose() * samples.transpose());
   return (powers(outside) * coefficients).transpose();
 }
+
+}  // namespace
 
 DerivativeRoom::DerivativeRoom(Index samples, double frequency, double cutoff_frequency,
                                int filter_order)
@@ -311,9 +321,9 @@ class Resampler {
   Eigen::Vector4d instants_, weights_;  // s; of them
 };
 
-std::vector<Grid> gridsOf(const Examination& found, const SampleRules& rules) {
+std::vector<Grid> gridsOf(const SampleReport& found, const SampleRules& rules) {
   if (found.pieces.empty()) {
-    const SampleCounts& counts = found.report.counts;
+    const SampleCounts& counts = found.counts;
     throw EvaluationError(
         "low-pass accelerations", "samples",
         std::to_string(rules.shortest_piece) + " or more that differ, without a gap",
@@ -329,11 +339,9 @@ std::vector<Grid> gridsOf(const Examination& found, const SampleRules& rules) {
 }
 
 Index longestOf(const std::vector<Grid>& grids) {
-  Index longest = 0;
-  for (const Grid& grid : grids) {
-    longest = std::max(longest, grid.count);
-  }
-  return longest;
+  return std::max_element(grids.begin(), grids.end(),
+                          [](const Grid& a, const Grid& b) { return a.count < b.count; })
+      ->count;
 }
 
 // Of the equidistant samples of all pieces [Hz].
@@ -448,13 +456,14 @@ void backwardDifferences(const ConstVector& time, const ConstColumns& qd, Column
   }
 }
 
-FilterChoice filterOf(SampleTable& table, const Examination& found, const LowPassOptions& options) {
+FilterChoice filterOf(SampleTable& table, const SampleReport& found,
+                      const LowPassOptions& options) {
   const std::vector<Grid> grids = gridsOf(found, options.rules);
   FilterChoice filter;
   filter.method = "zero-phase Butterworth low-pass of the velocities, then central differences";
   filter.order = options.order;
   filter.sampling_frequency = samplingFrequency(grids);
-  filter.time_base = found.report.time_base;
+  filter.time_base = found.time_base;
   filter.pieces = static_cast<Index>(grids.size());
   filter.cutoff = options.cutoff;
   filter.chosen = options.cutoff == 0;
@@ -515,13 +524,12 @@ AccelerationReport findAccelerations(SampleTable& table, AccelerationMethod meth
   // what the filter needs, every piece must have; without a filter none is too short
   options.rules.shortest_piece =
       filtered ? std::max(options.rules.shortest_piece, leastSamples(options.order)) : 1;
-  Examination found = examine(table, options.rules);
+  result.samples = examineSamples(table, options.rules);
   if (filtered) {
-    result.filter = filterOf(table, found, options);
+    result.filter = filterOf(table, result.samples, options);
   } else if (result.method == AccelerationMethod::kBackwardDifference) {
     backwardDifferences(table.time, table.qd, table.qdd);
   }
-  result.samples = std::move(found.report);
   result.summary = accelerationSummary(result.method, result.filter.cutoff, result.filter.chosen);
   result.findings =
       sampleFindings(name(table.clock()), result.samples, filtered ? &result.filter : nullptr);
@@ -536,16 +544,6 @@ OwnedMatrix backwardDifference(const ConstVector& time, const ConstColumns& qd) 
   OwnedMatrix qdd(qd.rows(), qd.cols());
   backwardDifferences(time, qd, qdd);
   return qdd;
-}
-
-AccelerationEstimate lowPassAccelerations(const ConstVector& time, const ConstColumns& q,
-                                          const ConstColumns& qd, const ConstColumns& effort,
-                                          const LowPassOptions& options) {
-  checkSamples(time, q, qd, effort);
-  const auto table = tableOf(time, q, qd, effort);
-  AccelerationReport found = findAccelerations(*table, AccelerationMethod::kLowPass, options);
-  addSeries(*table, found.samples);
-  return {table->qdd, std::move(found.filter), std::move(found.samples)};
 }
 
 }  // namespace v2

@@ -84,18 +84,6 @@ double leastError(const VelocitySpectra& spectra, const Eigen::ArrayXd& candidat
   return best;
 }
 
-void checkStretches(const std::vector<Stretch>& stretches) {
-  for (const Stretch& stretch : stretches) {
-    requireSameSize("cut-off", "q", stretch.q, "qd", stretch.qd);
-    requireFinite("cut-off", "q", stretch.q);
-    requireFinite("cut-off", "qd", stretch.qd);
-    if (stretch.qd.rows() != stretches.front().qd.rows()) {
-      throw EvaluationError("cut-off", "stretches", "the same joints in all", "different numbers",
-                            "choose a cut-off for each robot");
-    }
-  }
-}
-
 }  // namespace
 
 void requireLongEnough(Eigen::Index longest) {
@@ -104,22 +92,6 @@ void requireLongEnough(Eigen::Index longest) {
                           std::to_string(kLeastStretch) + " or more without a gap",
                           std::to_string(longest), "give a cut-off, or take raw differences");
   }
-}
-
-CutoffChoice chooseCutoff(const std::vector<Stretch>& stretches, double sampling_frequency,
-                          int order) {
-  checkStretches(stretches);
-  Eigen::Index longest = 0;
-  for (const Stretch& stretch : stretches) {
-    longest = std::max(longest, stretch.qd.cols());
-  }
-  requireLongEnough(longest);
-  SpectrumSums sums(stretches.front().qd.rows(), longest, sampling_frequency);
-  for (const Stretch& stretch : stretches) {
-    sums.add(stretch);
-  }
-  const double duration = static_cast<double>(longest - 1) / sampling_frequency;
-  return cutoffOf(sums.spectra(), duration, sampling_frequency, order);
 }
 
 CutoffChoice cutoffOf(const VelocitySpectra& spectra, double duration, double sampling_frequency,

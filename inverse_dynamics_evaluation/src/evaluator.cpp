@@ -3,13 +3,11 @@
 #include "inverse_dynamics_evaluation/evaluator.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <utility>
 
 #include "checks.hpp"
-#include "examination.hpp"
 #include "figures.hpp"
 #include "filtering.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
@@ -30,20 +28,6 @@ constexpr double kRead = 0.4;
 constexpr double kAccelerated = 0.6;
 constexpr double kComputed = 0.85;
 constexpr double kMeasured = 0.9;
-
-// Runs from where it is made.
-class Stopwatch {
- public:
-  /// Seconds since the last call.
-  double lap() {
-    const auto now = Clock::now();
-    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last_ = Clock::now();
-};
 
 // Errors say which recording they are of.
 template <class Call>
@@ -120,7 +104,6 @@ void evaluateTable(Evaluation& result, const InverseDynamicsSolver& solver,
                    const EvaluationOptions& options) {
   SampleTable& table = *result.table;
   result.joint_names = solver.jointNames();
-  Stopwatch watch;
   const std::vector<std::string> jumps =
       unwrapPositions(table, solver.jointTypes(), result.joint_names);
   LowPassOptions filter;
@@ -128,12 +111,10 @@ void evaluateTable(Evaluation& result, const InverseDynamicsSolver& solver,
   filter.rules = options.rules;
   result.accelerations =
       named(options, [&] { return findAccelerations(table, options.method, filter); });
-  result.acceleration_seconds = watch.lap();
   computeTorques(table, solver, options);
   settleEffort(result, solver, options);
   const bool recorded = table.effort.size() > 0;
   if (recorded) compare(result, options);
-  result.torque_seconds = watch.lap();
   for (const std::vector<std::string>& notes :
        {solver.warnings(), options.notes, table.notes,
         effortNotes(result.effort, options.effort, recorded && table.effort.isZero(0),
@@ -158,7 +139,6 @@ Evaluation evaluate(const RecordedColumns& columns, const InverseDynamicsSolver&
 
 Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
                     const InverseDynamicsSolver& solver, const EvaluationOptions& options) {
-  Stopwatch watch;
   Evaluation result;
   result.effort = statedEffort(options.effort);
   result.table = std::make_shared<SampleTable>(recording.scratch);
@@ -167,7 +147,6 @@ Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
     progress = [&](double share) { options.progress(kRead * share); };
   }
   readTable(source, recording, *result.table, progress);
-  result.reading_seconds = watch.lap();
   evaluateTable(result, solver, options);
   return result;
 }

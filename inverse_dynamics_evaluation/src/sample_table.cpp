@@ -13,6 +13,8 @@
 #include <system_error>
 #include <utility>
 
+#include "checks.hpp"
+
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
@@ -173,6 +175,18 @@ std::unique_ptr<SampleTable> tableOf(const RecordedColumns& columns) {
   if (columns.effort.size() > 0) table->effort = columns.effort;
   if (columns.qdd.size() > 0) table->qdd = columns.qdd;
   table->complete(columns.clock);
+  return table;
+}
+
+std::unique_ptr<SampleTable> tableOf(const Eigen::Ref<const Eigen::VectorXd>& time,
+                                     const Eigen::Ref<const Eigen::MatrixXd>& q,
+                                     const Eigen::Ref<const Eigen::MatrixXd>& qd,
+                                     const Eigen::Ref<const Eigen::MatrixXd>& effort) {
+  checkSamples(time, q, qd, effort);
+  const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> stamps =
+      (time * 1e9).array().round().cast<std::int64_t>();  // for texts
+  auto table = tableOf({stamps, stamps, Clock::kHeader, q, qd, effort, Eigen::MatrixXd()});
+  table->time = time;
   return table;
 }
 

@@ -10,8 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "checks.hpp"
-#include "examination.hpp"
+#include "inverse_dynamics_evaluation/error.hpp"
 #include "pi.hpp"
 #include "start_transient.hpp"
 
@@ -159,65 +158,68 @@ void forEachOwn(const SampleTable& table, const SampleRules& rules, const Timing
   }
 }
 
-// Calls `visit` with the distances [timing.unit()] of neighbours among those samples.
-template <class Visit>
-void forEachDistance(const SampleTable& table, const SampleRules& rules, const Timing& timing,
-                     Visit visit) {
-  double before = std::numeric_limits<double>::quiet_NaN();
-  forEachOwn(table, rules, timing, [&](Index /*k*/, double time) {
-    const double distance = time - std::exchange(before, time);
-    if (std::isnan(distance)) return;
-    visit(timing.base == TimeBase::kStamps ? std::round(distance / kNanosecond) : distance);
-  });
-}
-
-// Mean of the distances that are at most `limit` [s]; 0 if there are none.
-double meanDistance(const SampleTable& table, const SampleRules& rules, const Timing& timing,
-                    double limit) {
-  double sum = 0, count = 0;
-  forEachDistance(table, rules, timing, [&](double distance) {
-    if (std::abs(distance) <= limit / timing.unit()) sum += distance, ++count;
-  });
-  return count > 0 ? timing.unit() * (sum / count) : 0;
-}
-
-// Mean distance of the samples, gaps aside [s].
-double meanPeriod(const SampleTable& table, const SampleRules& rules, const Timing& timing) {
-  double period = meanDistance(table, rules, timing, kInfinity);
-  for (bool changed = true; changed;) {
-    const double nearer =
-        meanDistance(table, rules, timing, kJust * gapFrom(rules.longest_gap, period));
-    changed = nearer < period;  // some distance is at most the mean
-    period = std::min(period, nearer);
+// Distances of neighbours among those samples, in the table's scratch memory. Limits are in s.
+class Distances {
+ public:
+  Distances(SampleTable& table, const SampleRules& rules, const Timing& timing)
+      : unit_(timing.unit()), memory_(table.scratch(1, table.size())) {
+    double before = std::numeric_limits<double>::quiet_NaN();
+    forEachOwn(table, rules, timing, [&](Index /*k*/, double time) {
+      const double distance = time - std::exchange(before, time);
+      if (std::isnan(distance)) return;
+      memory_(0, count_++) = unit_ == kNanosecond ? std::round(distance / unit_) : distance;
+    });
   }
-  return period;
-}
 
-// Median of the distances that are at most `limit` [s]: a sample that was lost doesn't change it.
-double medianDistance(SampleTable& table, const SampleRules& rules, const Timing& timing,
-                      double limit) {
-  auto all = table.scratch(1, table.size());
-  Index count = 0;
-  forEachDistance(table, rules, timing, [&](double distance) {
-    if (std::abs(distance) <= limit / timing.unit()) all(0, count++) = distance;
-  });
-  double* const middle = all.data() + (count > 0 ? (count - 1) / 2 : 0);
-  if (count > 0) std::nth_element(all.data(), middle, all.data() + count);
-  return count > 0 ? timing.unit() * *middle : 0;
-}
+  /// Mean of those up to a limit [s]; 0 if there are none.
+  double mean(double limit) const {
+    const auto near = upTo(limit);
+    return near.any() ? unit_ * (near.select(all(), 0.0).sum() / count(near)) : 0;
+  }
 
-// Root mean square by which the distances that are at most `limit` [s] deviate from their mean.
-double deviation(const SampleTable& table, const SampleRules& rules, const Timing& timing,
-                 double limit) {
-  const double middle = meanDistance(table, rules, timing, limit) / timing.unit();
-  double squares = 0, count = 0;
-  forEachDistance(table, rules, timing, [&](double distance) {
-    if (std::abs(distance) > limit / timing.unit()) return;
-    squares += std::pow(distance - middle, 2);
-    ++count;
-  });
-  return count > 0 ? timing.unit() * std::sqrt(squares / count) : 0;
-}
+  /// Mean, gaps aside [s].
+  double meanPeriod(double longest_gap) const {
+    double period = mean(kInfinity);
+    for (bool changed = true; changed;) {
+      const double nearer = mean(kJust * gapFrom(longest_gap, period));
+      changed = nearer < period;  // some distance is at most the mean
+      period = std::min(period, nearer);
+    }
+    return period;
+  }
+
+  /// Median of those up to a limit [s]: a sample that was lost doesn't change it.
+  double median(double limit) {
+    double* const begin = memory_.data();
+    double* const end = std::partition(begin, begin + count_, [&](double distance) {
+      return std::abs(distance) <= limit / unit_;
+    });
+    double* const middle = begin + std::max<std::ptrdiff_t>(end - begin - 1, 0) / 2;
+    if (begin < end) std::nth_element(begin, middle, end);
+    return begin < end ? unit_ * *middle : 0;
+  }
+
+  /// Root mean square by which those up to a limit deviate from their mean [s].
+  double deviation(double limit) const {
+    const auto near = upTo(limit);
+    const double middle = mean(limit) / unit_;
+    if (!near.any()) return 0;
+    return unit_ * std::sqrt(near.select((all() - middle).square(), 0.0).sum() / count(near));
+  }
+
+ private:
+  Eigen::Map<const ArrayXd> all() const { return {memory_.data(), count_}; }
+  Eigen::Array<bool, Eigen::Dynamic, 1> upTo(double limit) const {
+    return all().abs() <= limit / unit_;
+  }
+  static double count(const Eigen::Array<bool, Eigen::Dynamic, 1>& near) {
+    return static_cast<double>(near.count());
+  }
+
+  double unit_;  // s
+  SampleTable::JointColumns memory_;
+  Index count_ = 0;
+};
 
 // What is left to be done about stamps that don't increase.
 void checkStamps(const Census& census, const SampleRules& rules, TimeBase base) {
@@ -328,13 +330,13 @@ Base tryTimeBase(const SampleTable& table, const Timing& timing, double gap, Ind
 }
 
 // The time bases, in the order of TimeBase.
-std::vector<Base> tryTimeBases(const SampleTable& table, const Census& census,
-                               const SampleRules& rules) {
+std::vector<Base> tryTimeBases(SampleTable& table, const Census& census, const SampleRules& rules) {
   std::vector<Base> bases;
   for (const TimeBase base : {TimeBase::kStamps, TimeBase::kRegular, TimeBase::kRegularFresh}) {
     Timing timing = census.timing;
     timing.base = base;
-    const double gap = gapFrom(rules.longest_gap, meanPeriod(table, rules, timing));
+    const double period = Distances(table, rules, timing).meanPeriod(rules.longest_gap);
+    const double gap = gapFrom(rules.longest_gap, period);
     bases.push_back(tryTimeBase(
         table, timing, gap, base == TimeBase::kStamps ? census.used : census.timing.fresh, rules));
   }
@@ -490,79 +492,44 @@ std::string name(TimeBase time_base) {
   return "unknown";
 }
 
-Examination examine(SampleTable& table, const SampleRules& rules) {
+SampleReport examineSamples(SampleTable& table, const SampleRules& rules) {
   markFaults(table);
   const Census census = takeCensus(table, rules);
-  const std::vector<Base> bases = tryTimeBases(table, census, rules);
-  Examination found;
-  SampleReport& report = found.report;
+  std::vector<Base> bases = tryTimeBases(table, census, rules);
+  SampleReport report;
   report.backward = census.backward;
   report.lone = findLoneSample(table);
   const TimeBase fitting = chooseTimeBase(bases, report);
   report.time_base = rules.time_base ? fitting : TimeBase::kStamps;
   checkStamps(census, rules, report.time_base);
-  const Base& base = bases[static_cast<std::size_t>(report.time_base)];
+  Base& base = bases[static_cast<std::size_t>(report.time_base)];
   const Index used = report.time_base == TimeBase::kStamps ? census.used : census.timing.fresh;
   if (used < 2) {
     throw EvaluationError("samples", "samples",
                           "2 or more that differ and have a stamp of their own",
                           std::to_string(used), "record a motion");
   }
-  found.pieces = base.pieces;
-  for (const Piece& piece : found.pieces) {
-    report.pieces.push_back(piece.first);
-  }
-  report.gaps = base.gaps;
+  report.gaps = std::move(base.gaps);
   report.longest_gap = base.longest_gap;
-  report.period = meanPeriod(table, rules, base.timing);
+  Distances used_ones(table, rules, base.timing);
+  report.period = used_ones.meanPeriod(rules.longest_gap);
   const double gap = kJust * gapFrom(rules.longest_gap, report.period);
   // at least half of the mean distance, as most samples of a recording may come in bursts
-  found.usual_period =
-      std::max(medianDistance(table, rules, base.timing, gap), 0.5 * report.period);
+  report.usual_period = std::max(used_ones.median(gap), 0.5 * report.period);
   Timing all;
   all.every = true;
   SampleRules none = rules;
   none.repeated = false;
-  report.stamped_period = medianDistance(table, none, all, kInfinity);
-  report.jitter = deviation(table, none, all, gap);
+  Distances stamped(table, none, all);
+  report.stamped_period = stamped.median(kInfinity);
+  report.jitter = stamped.deviation(gap);
 
-  setInstants(table, base.timing, found.pieces, rules);
+  setInstants(table, base.timing, base.pieces, rules);
+  report.pieces = std::move(base.pieces);
   report.counts = census.counts;
   report.counts.start_transient = lookAtStart(table, census.timing.fresh, report.period, rules);
   markKept(table, rules, report.counts);
-  return found;
-}
-
-std::unique_ptr<SampleTable> tableOf(const Eigen::Ref<const VectorXd>& time,
-                                     const Eigen::Ref<const MatrixXd>& q,
-                                     const Eigen::Ref<const MatrixXd>& qd,
-                                     const Eigen::Ref<const MatrixXd>& effort) {
-  const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> stamps =
-      (time * 1e9).array().round().cast<std::int64_t>();  // for texts
-  auto table = tableOf({stamps, stamps, Clock::kHeader, q, qd, effort, MatrixXd()});
-  table->time = time;
-  return table;
-}
-
-void addSeries(const SampleTable& table, SampleReport& report) {
-  report.repeated = table.repeated;
-  report.non_increasing = table.non_increasing;
-  report.start_transient = table.start_transient;
-  report.isolated = table.isolated;
-  report.used = table.used;
-  report.kept = table.kept;
-  report.time = table.instant;
-}
-
-SampleReport examineSamples(const Eigen::Ref<const VectorXd>& time,
-                            const Eigen::Ref<const MatrixXd>& q,
-                            const Eigen::Ref<const MatrixXd>& qd,
-                            const Eigen::Ref<const MatrixXd>& effort, const SampleRules& rules) {
-  checkSamples(time, q, qd, effort);
-  const auto table = tableOf(time, q, qd, effort);
-  Examination found = examine(*table, rules);
-  addSeries(*table, found.report);
-  return std::move(found.report);
+  return report;
 }
 
 }  // namespace v2

@@ -19,6 +19,12 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
+/// A stretch of equidistant samples.
+struct Stretch {
+  Eigen::MatrixXd q;   ///< n x N; rad (prismatic m)
+  Eigen::MatrixXd qd;  ///< n x N; rad/s (prismatic m/s)
+};
+
 /// Samples without which a stretch says nothing about its spectrum.
 constexpr Eigen::Index kLeastStretch = 16;
 

@@ -43,11 +43,12 @@ TEST(LogAccelerations, AreThoseOfTheMethodThatWasNamed) {
   const LogAccelerations given = logAccelerations(log, accelerationMethod("low-pass"), 5.0);
   LowPassOptions options;
   options.cutoff = 5.0;
-  EXPECT_EQ(given.qdd, lowPassAccelerations(time, log.q, log.qd, log.effort, options).qdd);
+  const auto table = tableOf(time, log.q, log.qd, log.effort);
+  EXPECT_EQ(given.qdd, accelerationsOf(*table, AccelerationMethod::kLowPass, options).qdd);
   EXPECT_EQ(given.summary, "zero-phase low-pass, cut-off 5 Hz (given), then derivative");
 
   const LogAccelerations chosen = logAccelerations(log);
-  EXPECT_EQ(chosen.qdd, lowPassAccelerations(time, log.q, log.qd, log.effort).qdd);
+  EXPECT_EQ(chosen.qdd, accelerationsOf(*table, AccelerationMethod::kLowPass, {}).qdd);
   EXPECT_THAT(chosen.summary, HasSubstr("chosen from the data"));
   EXPECT_TRUE(chosen.findings.empty());
 }

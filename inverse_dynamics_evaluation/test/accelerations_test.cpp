@@ -9,6 +9,7 @@
 #include "error_of.hpp"
 #include "filtering.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
+#include "joint_log.hpp"
 #include "motion.hpp"
 
 namespace inverse_dynamics_evaluation::accelerations_test {
@@ -24,8 +25,9 @@ Eigen::MatrixXd lowPassDerivative(const Eigen::MatrixXd& samples, double rate, d
   return room.differentiate(columns);
 }
 
-AccelerationEstimate estimate(const Motion& motion, const LowPassOptions& options = {}) {
-  return lowPassAccelerations(motion.time, motion.q, motion.qd, motion.effort, options);
+LogAccelerations estimate(const Motion& motion, const LowPassOptions& options = {}) {
+  return accelerationsOf(*tableOf(motion.time, motion.q, motion.qd, motion.effort),
+                         AccelerationMethod::kLowPass, options);
 }
 
 // Columns of a motion from one instant to another, both within it.
@@ -124,7 +126,7 @@ TEST(LowPassDerivative, WorksOnFewSamplesAndSlowCutOffs) {
 TEST(LowPassAccelerations, AreThoseOfTheMotion) {
   for (const double rate : {30.0, 125.0, 1000.0}) {
     const Motion motion = sines(rate, 10.0, {0.5, 1.0});
-    const AccelerationEstimate result = estimate(motion, cutoffOf(0.4 * rate));
+    const LogAccelerations result = estimate(motion, cutoffOf(0.4 * rate));
     // away from the ends: 1 Hz through 12 Hz at 30 Hz sampling loses 5e-5, central differences 2e-3
     const auto margin = static_cast<Eigen::Index>(rate);
     const Eigen::Index inner = motion.count() - 2 * margin;
@@ -246,7 +248,7 @@ TEST(LowPassAccelerations, HaveNoDelay) {
 TEST(LowPassAccelerations, SayWhatTheyDid) {
   Motion motion = sines(200.0, 10.0, {0.5, 1.0});
   addVelocityNoise(motion, 0.005, 1);
-  const AccelerationEstimate chosen = estimate(motion);
+  const LogAccelerations chosen = estimate(motion);
   EXPECT_TRUE(chosen.filter.chosen);
   EXPECT_EQ(chosen.filter.cutoff, chosen.filter.choice.cutoff);
   EXPECT_EQ(chosen.filter.order, 2);
@@ -256,7 +258,7 @@ TEST(LowPassAccelerations, SayWhatTheyDid) {
   EXPECT_THAT(chosen.filter.method, HasSubstr("zero-phase Butterworth"));
 
   // what was said is what was done
-  const AccelerationEstimate given = estimate(motion, cutoffOf(chosen.filter.cutoff));
+  const LogAccelerations given = estimate(motion, cutoffOf(chosen.filter.cutoff));
   EXPECT_FALSE(given.filter.chosen);
   EXPECT_EQ(given.qdd, chosen.qdd);
   const Eigen::MatrixXd by_hand =
@@ -269,9 +271,9 @@ TEST(LowPassAccelerations, DoNotSufferFromRepeatsAndJitteringStamps) {
   addVelocityNoise(clean, 0.005, 1);
   Motion motion = withRepeats(clean, 8);
   jitterStamps(motion, 0.8, 2);
-  const AccelerationEstimate result = estimate(motion);
+  const LogAccelerations result = estimate(motion);
   EXPECT_LT(rms(result.qdd, motion.qdd), 1.2 * rms(estimate(clean).qdd, clean.qdd));
-  EXPECT_EQ(result.samples.repeated.count(), motion.count() / 8);
+  EXPECT_EQ(result.samples.counts.repeated, motion.count() / 8);
   // a repeat gets the acceleration of the sample it repeats
   EXPECT_EQ(result.qdd.col(7), result.qdd.col(6));
 }
@@ -327,7 +329,7 @@ TEST(LowPassAccelerations, DoNotMultiplySamplesThatComeInBursts) {
   addVelocityNoise(twice, 1e-4, 1);  // so that no sample repeats the one before
   LowPassOptions options = cutoffOf(8.0);
   options.rules.time_base = false;
-  const AccelerationEstimate result = estimate(twice, options);
+  const LogAccelerations result = estimate(twice, options);
   EXPECT_LT(result.filter.sampling_frequency, 5.0 * 125.0);
   EXPECT_LT(rms(result.qdd, twice.qdd), 0.1);
 }
@@ -336,7 +338,7 @@ TEST(LowPassAccelerations, FilterPiecesBetweenGapsByThemselves) {
   Motion motion = sines(200.0, 10.0, {0.5, 1.0});
   addVelocityNoise(motion, 0.002, 1);
   motion.time.tail(motion.count() - 800).array() += 100.0;
-  const AccelerationEstimate result = estimate(motion, cutoffOf(8.0));
+  const LogAccelerations result = estimate(motion, cutoffOf(8.0));
   EXPECT_EQ(result.filter.pieces, 2);
   const Eigen::MatrixXd first = lowPassDerivative(motion.qd.leftCols(800), 200.0, 8.0);
   const Eigen::MatrixXd second =
@@ -350,9 +352,9 @@ TEST(LowPassAccelerations, GiveEverySampleANumber) {
   motion.time.tail(motion.count() - 400).array() += 3.0;
   motion.time.tail(motion.count() - 405).array() += 2.0;  // five samples alone
   motion.time[700] = motion.time[690];
-  const AccelerationEstimate result = estimate(motion, cutoffOf(5.0));
+  const LogAccelerations result = estimate(motion, cutoffOf(5.0));
   EXPECT_TRUE(result.qdd.allFinite());
-  EXPECT_EQ(result.samples.kept.count(), motion.count() - 6);
+  EXPECT_EQ(result.samples.counts.kept, motion.count() - 6);
   // those alone lie on the line between their neighbours
   const Eigen::VectorXd low = result.qdd.col(399).cwiseMin(result.qdd.col(405));
   const Eigen::VectorXd high = result.qdd.col(399).cwiseMax(result.qdd.col(405));

@@ -33,21 +33,24 @@ struct JointLog {
   }
 };
 
-/// Accelerations of a log, and how they came about.
+/// Accelerations, and how they came about.
 struct LogAccelerations : AccelerationReport {
   Eigen::MatrixXd qdd;
 };
 
+inline LogAccelerations accelerationsOf(SampleTable& table, AccelerationMethod method,
+                                        const LowPassOptions& options) {
+  LogAccelerations found{findAccelerations(table, method, options), {}};
+  found.qdd = table.qdd;
+  return found;
+}
+
 inline LogAccelerations logAccelerations(const JointLog& log,
                                          AccelerationMethod method = AccelerationMethod::kAuto,
                                          double cutoff = 0) {
-  const auto table = tableOf(log);
   LowPassOptions options;
   options.cutoff = cutoff;
-  LogAccelerations found;
-  static_cast<AccelerationReport&>(found) = findAccelerations(*table, method, options);
-  found.qdd = table->qdd;
-  return found;
+  return accelerationsOf(*tableOf(log), method, options);
 }
 
 }  // namespace inverse_dynamics_evaluation

@@ -12,17 +12,35 @@
 
 namespace inverse_dynamics_evaluation::samples_test {
 
-using ::testing::ElementsAre;
+using ::testing::Field;
 using ::testing::HasSubstr;
 
-SampleReport examine(const Motion& motion, const SampleRules& rules = {}) {
-  return examineSamples(motion.time, motion.q, motion.qd, motion.effort, rules);
+// What was found, and what the table says of each sample.
+struct Examined : SampleReport {
+  Examined(std::unique_ptr<SampleTable> made, const SampleRules& rules)
+      : SampleReport(examineSamples(*made, rules)), table(std::move(made)) {}
+
+  std::unique_ptr<SampleTable> table;
+  SampleTable::FlagColumn repeated = table->repeated, non_increasing = table->non_increasing,
+                          start_transient = table->start_transient, isolated = table->isolated,
+                          used = table->used, kept = table->kept;
+  SampleTable::NumberColumn time = table->instant;
+};
+
+Examined examine(const Motion& motion, const SampleRules& rules = {}) {
+  return {tableOf(motion.time, motion.q, motion.qd, motion.effort), rules};
+}
+
+auto piecesFrom(const std::vector<Eigen::Index>& firsts) {
+  std::vector<::testing::Matcher<Piece>> matchers;
+  for (const Eigen::Index first : firsts) matchers.emplace_back(Field(&Piece::first, first));
+  return ::testing::ElementsAreArray(matchers);
 }
 
 TEST(ExamineSamples, FindsNothingWrongWithACleanRecording) {
   Motion motion = sines(125.0, 4.0, {0.5, 1.0});
   addVelocityNoise(motion, 0.005, 1);
-  const SampleReport report = examine(motion);
+  const Examined report = examine(motion);
   EXPECT_FALSE(report.repeated.any());
   EXPECT_FALSE(report.non_increasing.any());
   EXPECT_FALSE(report.start_transient.any());
@@ -31,7 +49,7 @@ TEST(ExamineSamples, FindsNothingWrongWithACleanRecording) {
   EXPECT_TRUE(report.kept.all());
   EXPECT_EQ(report.time_base, TimeBase::kStamps);
   EXPECT_EQ(report.time, motion.time);
-  EXPECT_THAT(report.pieces, ElementsAre(0));
+  EXPECT_THAT(report.pieces, piecesFrom({0}));
   EXPECT_NEAR(report.period, 0.008, 1e-12);
   EXPECT_NEAR(report.stamped_period, 0.008, 1e-12);
   EXPECT_LT(report.jitter, 1e-9);
@@ -41,7 +59,7 @@ TEST(ExamineSamples, LeavesRepeatedSamplesOut) {
   Motion motion = sines(100.0, 4.0, {0.5, 1.0});
   addVelocityNoise(motion, 0.005, 1);
   motion = withRepeats(motion, 10);
-  const SampleReport report = examine(motion);
+  const Examined report = examine(motion);
   for (Eigen::Index k = 0; k < motion.count(); ++k) {
     EXPECT_EQ(report.repeated[k], k % 10 == 9) << k;
   }
@@ -51,7 +69,7 @@ TEST(ExamineSamples, LeavesRepeatedSamplesOut) {
 
   SampleRules rules;
   rules.repeated = false;  // found all the same, not acted upon
-  const SampleReport all = examine(motion, rules);
+  const Examined all = examine(motion, rules);
   EXPECT_TRUE((all.repeated == report.repeated).all());
   EXPECT_TRUE(all.used.all());
   EXPECT_TRUE(all.kept.all());
@@ -60,11 +78,12 @@ TEST(ExamineSamples, LeavesRepeatedSamplesOut) {
 TEST(ExamineSamples, TakesASampleForRepeatedOnlyIfEverythingIs) {
   Motion motion = withRepeats(sines(100.0, 4.0, {0.5, 1.0}), 10);
   motion.effort(1, 19) += 1e-12;
-  const SampleReport report = examine(motion);
+  const Examined report = examine(motion);
   EXPECT_TRUE(report.repeated[9]);
   EXPECT_FALSE(report.repeated[19]);
   // without efforts, positions and velocities decide
-  EXPECT_TRUE(examineSamples(motion.time, motion.q, motion.qd, Eigen::MatrixXd()).repeated[19]);
+  motion.effort.resize(0, 0);
+  EXPECT_TRUE(examine(motion).repeated[19]);
 }
 
 TEST(ExamineSamples, DoesNotTakeRestForRepetition) {
@@ -83,7 +102,7 @@ TEST(ExamineSamples, LeavesStampsThatDoNotIncreaseOut) {
   motion.time[80] = motion.time[70];  // later samples must pass sample 79 again
   SampleRules rules;
   rules.time_base = false;
-  const SampleReport report = examine(motion, rules);
+  const Examined report = examine(motion, rules);
   for (Eigen::Index k = 0; k < motion.count(); ++k) {
     EXPECT_EQ(report.non_increasing[k], k == 50 || k == 80) << k;
     EXPECT_EQ(report.kept[k], !(k == 50 || k == 80)) << k;
@@ -102,7 +121,7 @@ TEST(ExamineSamples, ReplacesJitteringStampsByEqualDistances) {
   Motion motion = clean;
   addVelocityNoise(motion, 0.005, 1);
   jitterStamps(motion, 0.8, 2);
-  const SampleReport report = examine(motion);
+  const Examined report = examine(motion);
   EXPECT_EQ(report.time_base, TimeBase::kRegular);
   EXPECT_LT(report.disagreement[1], 0.2 * report.disagreement[0]);
   // exact but for where the first and the last stamp lie
@@ -146,7 +165,7 @@ TEST(ExamineSamples, TellsMissedStatesFromARecorderThatIsTooFast) {
     samples.push_back(k - k / 25);
   }
   const Motion polled = pick(motion, samples, 0.96 * motion.time);
-  const SampleReport report = examine(polled);
+  const Examined report = examine(polled);
   EXPECT_EQ(report.time_base, TimeBase::kRegularFresh);
   EXPECT_EQ(report.repeated.count(), motion.count() / 25);
   EXPECT_NEAR(report.period, 0.01, 1e-4);
@@ -169,7 +188,7 @@ TEST(ExamineSamples, KeepsTheStampsWhereMessagesWereLost) {
   }
   Motion lossy = pick(motion, samples, time);
   jitterStamps(lossy, 0.6, 4);
-  const SampleReport report = examine(lossy);
+  const Examined report = examine(lossy);
   EXPECT_LT(report.disagreement[1], 0.8 * report.disagreement[0]);
   EXPECT_EQ(report.time_base, TimeBase::kStamps);
 }
@@ -181,7 +200,7 @@ TEST(ExamineSamples, UsesSamplesOfEqualStampsIfEqualDistancesFit) {
   for (Eigen::Index k = 0; k + 2 < motion.count(); k += 3) {
     motion.time[k] = motion.time[k + 1] = motion.time[k + 2];
   }
-  const SampleReport report = examine(motion);
+  const Examined report = examine(motion);
   EXPECT_EQ(report.time_base, TimeBase::kRegular);
   EXPECT_GT(2 * report.non_increasing.count(), motion.count());
   EXPECT_TRUE(report.used.all());
@@ -192,7 +211,7 @@ TEST(ExamineSamples, DoesNotCountAStartTransient) {
   for (Eigen::Index k = 0; k < 6; ++k) {
     motion.effort(0, k) += k % 2 == 0 ? 8.0 : -8.0;
   }
-  const SampleReport report = examine(motion);
+  const Examined report = examine(motion);
   EXPECT_TRUE(report.start_transient.head(6).all());
   EXPECT_LE(report.start_transient.count(), 7);  // the jump back touches one more
   EXPECT_TRUE((report.kept == !report.start_transient).all());
@@ -218,7 +237,7 @@ TEST(ExamineSamples, TakesNoMissedSampleForAStartTransient) {
   motion.q.col(20) = motion.q.col(19);
   motion.qd.col(20) = motion.qd.col(19);
   motion.effort.col(20) = motion.effort.col(19);
-  const SampleReport report = examine(motion);
+  const Examined report = examine(motion);
   EXPECT_TRUE(report.repeated[20]);
   EXPECT_FALSE(report.start_transient.any());
 }
@@ -227,8 +246,8 @@ TEST(ExamineSamples, CutsAtGapsAndDropsShortPieces) {
   Motion motion = sines(100.0, 10.0, {0.5, 1.0});
   motion.time.tail(motion.count() - 400).array() += 3.0;  // a gap before sample 400,
   motion.time.tail(motion.count() - 405).array() += 2.0;  // and another before sample 405
-  const SampleReport report = examine(motion);
-  EXPECT_THAT(report.pieces, ElementsAre(0, 405));
+  const Examined report = examine(motion);
+  EXPECT_THAT(report.pieces, piecesFrom({0, 405}));
   for (Eigen::Index k = 0; k < motion.count(); ++k) {
     EXPECT_EQ(report.isolated[k], k >= 400 && k < 405) << k;
   }
@@ -237,14 +256,14 @@ TEST(ExamineSamples, CutsAtGapsAndDropsShortPieces) {
 
   SampleRules rules;
   rules.longest_gap = 5.0;
-  EXPECT_THAT(examine(motion, rules).pieces, ElementsAre(0));
+  EXPECT_THAT(examine(motion, rules).pieces, piecesFrom({0}));
 }
 
 TEST(ExamineSamples, SurvivesAFirstStampOfZero) {
   // a recorder that started before its clock was set
   Motion motion = sines(100.0, 5.0, {0.5, 1.0});
   motion.time.tail(motion.count() - 1).array() += 1.7e9;
-  const SampleReport report = examine(motion);
+  const Examined report = examine(motion);
   EXPECT_TRUE(report.isolated[0]);
   EXPECT_EQ(report.isolated.count(), 1);
   EXPECT_NEAR(report.period, 0.01, 1e-6);
@@ -275,8 +294,8 @@ TEST(ExamineSamples, RefusesWhatItCannotExamine) {
   EXPECT_THAT(errorOf<EvaluationError>([&] { examine(bad); }),
               HasSubstr("effort: expected 2 joints x 101 samples"));
   EXPECT_THAT(errorOf<EvaluationError>([&] {
-                examineSamples(motion.time.head(1), motion.q.leftCols(1), motion.qd.leftCols(1),
-                               Eigen::MatrixXd());
+                tableOf(motion.time.head(1), motion.q.leftCols(1), motion.qd.leftCols(1),
+                        Eigen::MatrixXd());
               }),
               HasSubstr("qd: expected 2 samples or more"));
   bad = motion;
@@ -285,10 +304,8 @@ TEST(ExamineSamples, RefusesWhatItCannotExamine) {
               HasSubstr("stamps of which half increase or more"));
   bad.time.setConstant(3.0);
   EXPECT_THROW(examine(bad), EvaluationError);
-  const Eigen::MatrixXd same = Eigen::MatrixXd::Ones(2, 5);
-  EXPECT_THAT(errorOf<EvaluationError>(
-                  [&] { examineSamples(Eigen::VectorXd::LinSpaced(5, 0, 1), same, same, same); }),
-              HasSubstr("2 or more that differ"));
+  bad = pick(motion, {0, 0, 0, 0, 0}, motion.time.head(5));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { examine(bad); }), HasSubstr("2 or more that differ"));
 }
 
 }  // namespace inverse_dynamics_evaluation::samples_test

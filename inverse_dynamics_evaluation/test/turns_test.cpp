@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "examination.hpp"
+#include "inverse_dynamics_evaluation/samples.hpp"
 
 namespace inverse_dynamics_evaluation::turns_test {
 

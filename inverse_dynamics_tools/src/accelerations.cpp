@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <inverse_dynamics_evaluation/accelerations.hpp>
 #include <inverse_dynamics_evaluation/samples.hpp>
+#include <memory>
 #include <tuple>
-#include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -30,19 +30,23 @@ std::tuple<Array, Array, double, double> lowPassAccelerations(const Array& time,
   evaluation::LowPassOptions options;
   options.cutoff = cutoff;
   options.rules.start_transient = false;
-  auto estimate = unlocked([&] {
-    return evaluation::lowPassAccelerations(vectorIn(time), q_in, qd_in, effort_in, options);
+  std::unique_ptr<evaluation::SampleTable> table;
+  const auto filter = unlocked([&] {
+    table = evaluation::tableOf(vectorIn(time), q_in, qd_in, effort_in);
+    return evaluation::findAccelerations(*table, evaluation::AccelerationMethod::kLowPass, options)
+        .filter;
   });
-  return {rowsOf(std::move(estimate.qdd)), arrayOf(estimate.samples.time), estimate.filter.cutoff,
-          estimate.filter.sampling_frequency};
+  return {rowsOf(table->qdd), arrayOf(table->instant), filter.cutoff, filter.sampling_frequency};
 }
 
 Array sampleInstants(const Array& time, const Array& q, const Array& qd, const Array& effort) {
   const ConstMap q_in = states(q, "q"), qd_in = states(qd, "qd"),
                  effort_in = states(effort, "effort");
-  const auto samples =
-      unlocked([&] { return evaluation::examineSamples(vectorIn(time), q_in, qd_in, effort_in); });
-  return arrayOf(samples.time);
+  return arrayOf(unlocked([&] {
+    const auto table = evaluation::tableOf(vectorIn(time), q_in, qd_in, effort_in);
+    evaluation::examineSamples(*table);
+    return Eigen::VectorXd(table->instant);
+  }));
 }
 
 Array lowPass(const Array& samples, double sampling_frequency, double cutoff, int order,

@@ -275,13 +275,14 @@ TEST(UsersProgram, EvaluatesALogOfItsOwn) {
   // qdd = -sin t, which the efforts are; the ends of a filter aside
   LowPassOptions options;
   options.cutoff = 20.0;
-  AccelerationEstimate found =
-      lowPassAccelerations(table.time, table.q, table.qd, table.effort, options);
-  found.samples.kept.head(40) = false;
-  found.samples.kept.tail(40) = false;
-  EXPECT_LT(metrics(found.qdd, table.effort, found.samples.kept)[0].rmse, 1e-3);
-  found.qdd = backwardDifference(table.time, table.qd);
-  EXPECT_EQ(found.qdd.cols(), kSamples);
+  AccelerationReport found = findAccelerations(table, AccelerationMethod::kLowPass, options);
+  found.summary += " of a user";
+  table.kept.head(40) = false;
+  table.kept.tail(40) = false;
+  EXPECT_LT(metrics(table.qdd, table.effort, Mask(table.kept))[0].rmse, 1e-3);
+  MatrixXd raw = backwardDifference(table.time, table.qd);
+  raw = 1.0 * raw;
+  EXPECT_EQ(raw.cols(), kSamples);
   MatrixXd smooth = lowPass(table.qd, 100.0, 10.0);
   smooth = 1.0 * smooth;
 

@@ -4,14 +4,15 @@
 /// Joint accelerations of recorded joint states, which no robot measures.
 ///
 ///     Eigen::MatrixXd raw = backwardDifference(time, qd);
-///     AccelerationEstimate good = lowPassAccelerations(time, q, qd, effort);
+///     const auto table = tableOf(time, q, qd, effort);
+///     const AccelerationReport good = findAccelerations(*table, AccelerationMethod::kLowPass);
 ///     std::cout << good.filter.cutoff << " Hz, mean torque error "
-///               << metrics(solver->getTorquesBatch(q, qd, good.qdd), effort)[0].rmse << " N m\n";
+///               << metrics(solver->getTorquesBatch(q, qd, table->qdd), effort)[0].rmse << " N m\n";
 ///
 /// The reference implementation takes backward differences: unbiased but for half a sample, and as
 /// noisy as velocity noise times sqrt(2) over the sampling period. At 1 kHz that is
-/// worse than no acceleration at all. lowPassAccelerations() filters before it differentiates, with
-/// a cut-off from the data. Only accelerations come from the filter; q and qd stay as measured.
+/// worse than no acceleration at all. findAccelerations() filters before it differentiates, with a
+/// cut-off from the data. Only accelerations come from the filter; q and qd stay as measured.
 ///
 /// The filter is a Butterworth filter of order m, over equidistant samples. It passes a sine of
 /// frequency f with the power
@@ -74,7 +75,7 @@ Eigen::Index defaultPadding(Eigen::Index samples, double sampling_frequency, dou
 OwnedMatrix lowPass(const Eigen::Ref<const Eigen::MatrixXd>& samples, double sampling_frequency,
                     double cutoff, int order = 2, Eigen::Index padding = -1);
 
-/// Options of lowPassAccelerations().
+/// Options of findAccelerations().
 struct LowPassOptions {
   double cutoff = 0;  ///< Hz; 0: chosen from the data
   int order = 2;      ///< of the Butterworth filter that runs forwards and backwards
@@ -92,34 +93,6 @@ struct FilterChoice {
   TimeBase time_base = TimeBase::kStamps;  ///< when samples were taken
   Eigen::Index pieces = 0;                 ///< filtered one by one, between gaps
 };
-
-/// Accelerations, how they came about, and what was found in the samples.
-struct AccelerationEstimate {
-  OwnedMatrix qdd;       ///< n x N; rad/s^2 (prismatic m/s^2)
-  FilterChoice filter;   ///< facts about the filter
-  SampleReport samples;  ///< findings; `samples.kept` is for the second metrics
-};
-
-/// Accelerations by a zero-phase low-pass of the velocities, then their derivative. O(N log N).
-///
-/// The used samples of examineSamples() are interpolated to equidistant ones at the median sampling
-/// period (at least half of the mean one), by cubics through four neighbours or, where two of these
-/// are closer than half a period or more than three apart, by a straight line; low-passed,
-/// differentiated, and interpolated back to the instants of all N samples. A sample that wasn't used
-/// gets the acceleration of its instant.
-///
-/// @param time    N; s; stamps.
-/// @param q       n x N, one sample per column; rad (prismatic m).
-/// @param qd      n x N; rad/s (prismatic m/s).
-/// @param effort  n x N; N m (prismatic N), or empty (0 x 0); for rules 1 and 4 of samples.hpp
-/// only.
-/// @throws EvaluationError as examineSamples(), lowPass() and chooseCutoff() do; fewer than 16 used
-///         samples in every piece.
-AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd>& time,
-                                          const Eigen::Ref<const Eigen::MatrixXd>& q,
-                                          const Eigen::Ref<const Eigen::MatrixXd>& qd,
-                                          const Eigen::Ref<const Eigen::MatrixXd>& effort,
-                                          const LowPassOptions& options = {});
 
 /// Where accelerations come from.
 enum class AccelerationMethod {
@@ -143,6 +116,19 @@ struct AccelerationReport {
   SampleReport samples;               ///< what was found
   std::vector<std::string> findings;  ///< about the samples, a sentence each
 };
+
+/// Fills accelerations, instants and flags of a table. O(N log N).
+///
+/// kLowPass: the used samples of examineSamples() are interpolated to equidistant ones at the median
+/// sampling period (at least half of the mean one), by cubics through four neighbours or, where two
+/// of these are closer than half a period or more than three apart, by a straight line; low-passed,
+/// differentiated, and interpolated back to the instants of all N samples. A sample that wasn't used
+/// gets the acceleration of its instant.
+///
+/// @throws EvaluationError: as examineSamples() and lowPass() do; fewer than 16 used samples in every
+///         piece; a cut-off for a method that has none; kGiven where none are recorded.
+AccelerationReport findAccelerations(SampleTable& table, AccelerationMethod method,
+                                     LowPassOptions options = {});
 
 /// Origin of accelerations in words, for titles and tables.
 ///

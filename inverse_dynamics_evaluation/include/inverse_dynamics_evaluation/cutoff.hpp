@@ -3,8 +3,8 @@
 /// @file
 /// A cut-off for the low-pass before differentiation, chosen from positions and velocities alone.
 ///
-///     CutoffChoice choice = chooseCutoff({{q, qd}}, 1000.0);
-///     std::cout << choice.cutoff << " Hz\n";
+///     const AccelerationReport found = findAccelerations(table, AccelerationMethod::kLowPass);
+///     std::cout << found.filter.choice.cutoff << " Hz\n";
 ///
 /// Criterion. A measured velocity is motion plus noise, with spectra S(f) and N(f). A low-pass
 /// of gain h(f) before differentiation makes, on average, the squared acceleration error
@@ -46,11 +46,6 @@
 
 #pragma once
 
-#include <Eigen/Core>
-#include <vector>
-
-#include "inverse_dynamics_evaluation/metrics.hpp"
-
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
@@ -61,21 +56,6 @@ struct CutoffChoice {
   double highest = 0;  ///< upper bound: 0.4 of the sampling frequency
   double moving = 0;   ///< share of the samples in motion, 0 to 1; the cut-off is chosen from them
 };
-
-/// A stretch of equidistant samples.
-struct Stretch {
-  OwnedMatrix q;   ///< n x N; rad (prismatic m)
-  OwnedMatrix qd;  ///< n x N; rad/s (prismatic m/s)
-};
-
-/// Cut-off for the zero-phase low-pass of qd before differentiation. O(N).
-///
-/// @param stretches           one or more, of the same n; joints that never move don't matter.
-/// @param sampling_frequency  Hz.
-/// @param order               of the Butterworth filter, as of lowPass().
-/// @throws EvaluationError: no stretch of 16 samples or more; sizes differ.
-CutoffChoice chooseCutoff(const std::vector<Stretch>& stretches, double sampling_frequency,
-                          int order = 2);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -70,10 +70,7 @@ struct Evaluation {
   Effort effort;
   std::vector<JointMetrics> errors;          ///< n; over all samples; empty without efforts
   std::vector<JointMetrics> errors_of_kept;  ///< n; over those that were kept
-  std::vector<std::string> notes;   ///< of solver and recording, on efforts, on the samples
-  double reading_seconds = 0;       ///< duration of reading
-  double acceleration_seconds = 0;  ///< duration of step 2
-  double torque_seconds = 0;        ///< duration of steps 3 to 5
+  std::vector<std::string> notes;  ///< of solver and recording, on efforts, on the samples
 };
 
 /// Torques of a recorded motion against the measured ones.

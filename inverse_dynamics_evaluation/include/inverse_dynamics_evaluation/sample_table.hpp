@@ -152,6 +152,19 @@ class SampleTable {
 /// A table of these samples, in memory; its computed columns hold nothing yet.
 std::unique_ptr<SampleTable> tableOf(const RecordedColumns& columns);
 
+/// The same of samples without stamps.
+///
+/// @param time    N; s.
+/// @param q       n x N, one sample per column; rad (prismatic m).
+/// @param qd      n x N; rad/s (prismatic m/s).
+/// @param effort  n x N; N m (prismatic N), or empty (0 x 0).
+/// @throws EvaluationError: sizes differ; fewer than 2 samples; a number that isn't finite (joint
+///         and sample are named).
+std::unique_ptr<SampleTable> tableOf(const Eigen::Ref<const Eigen::VectorXd>& time,
+                                     const Eigen::Ref<const Eigen::MatrixXd>& q,
+                                     const Eigen::Ref<const Eigen::MatrixXd>& qd,
+                                     const Eigen::Ref<const Eigen::MatrixXd>& effort);
+
 /// From when to when; both ends belong to it.
 struct TimeSpan {
   double from = -std::numeric_limits<double>::infinity();  ///< s since the first sample

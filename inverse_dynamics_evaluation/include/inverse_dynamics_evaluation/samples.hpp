@@ -3,9 +3,9 @@
 /// @file
 /// Faults of recorded joint states, and the time at which each sample was really taken.
 ///
-///     SampleReport samples = examineSamples(time, q, qd, effort);
-///     samples.repeated.count();                      // messages without news
-///     metrics(computed, measured, samples.kept);     // in addition to metrics(computed, measured)
+///     const SampleReport report = examineSamples(table);
+///     table.repeated.count();                        // messages without news
+///     metrics(computed, measured, table.kept);       // in addition to metrics(computed, measured)
 ///
 /// Recordings of real robots have faults that spoil a derivative. A rule for each finds it from the
 /// data alone, always reports it, and acts on it unless switched off:
@@ -41,11 +41,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chain_dynamics/chain.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "inverse_dynamics_evaluation/metrics.hpp"
+#include "inverse_dynamics_evaluation/sample_table.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -105,28 +106,27 @@ struct LoneSample {
   std::int64_t stamp = 0;  ///< ns
 };
 
-/// What the rules found in N samples, and what follows.
-///
-/// An evaluation leaves the columns (one entry per sample) empty: its table has them.
+/// Samples between two gaps.
+struct Piece {
+  Eigen::Index first = 0;   ///< number of its first sample
+  Eigen::Index behind = 0;  ///< of the first one that isn't in it
+  Eigen::Index used = 0;    ///< how many have an instant of their own
+  double begin = 0;         ///< s; of the first of those
+  double end = 0;           ///< s; of the last of those
+};
+
+/// What the rules found in N samples, and what follows; the table says it of each sample.
 struct SampleReport {
   SampleCounts counts;
-  Mask repeated;         ///< N; rule 1
-  Mask non_increasing;   ///< N; rule 2
-  Mask start_transient;  ///< N; rule 4
-  Mask isolated;         ///< N; rule 5: in a piece that is too short
-  Mask used;             ///< N; enters the differentiation
-  Mask kept;             ///< N; counts in metrics over kept samples
-  OwnedVector time;      ///< N; s; instant of each sample; a repeat has that of the sample it
-                         ///< repeats
-
   TimeBase time_base = TimeBase::kStamps;  ///< which one is used
-  std::vector<Eigen::Index> pieces;        ///< first sample of each piece (rule 5)
+  std::vector<Piece> pieces;               ///< of `shortest_piece` used samples or more
   std::vector<Eigen::Index> gaps;          ///< first used sample behind each gap (rule 5)
   LongestGap longest_gap;
   BackwardStamp backward;
   LoneSample lone;
 
   double period = 0;          ///< s; mean distance of the used samples, gaps aside
+  double usual_period = 0;    ///< s; median distance of the used samples
   double stamped_period = 0;  ///< s; median distance of the stamps
   double jitter = 0;          ///< s; root mean square of that distance's deviation from its mean
 
@@ -136,23 +136,26 @@ struct SampleReport {
   Eigen::Vector3d long_disagreement;  ///< the same over 50 intervals
 };
 
-/// Applies the rules above to recorded joint states. O(N).
+/// Applies the rules above: fills the table's flags and instants. O(N).
 ///
-/// @param time    N; s; stamps.
-/// @param q       n x N, one sample per column; rad (prismatic m).
-/// @param qd      n x N; rad/s (prismatic m/s).
-/// @param effort  n x N; N m (prismatic N), or empty (0 x 0): then repeats are found by q and qd,
-/// and
-///                no start transient is looked for.
-/// @throws EvaluationError: sizes differ; fewer than 2 samples; a number that isn't finite (joint
-/// and
-///         sample are named); stamps that don't increase where that rule is off, or for more than
-///         half of the samples.
-SampleReport examineSamples(const Eigen::Ref<const Eigen::VectorXd>& time,
-                            const Eigen::Ref<const Eigen::MatrixXd>& q,
-                            const Eigen::Ref<const Eigen::MatrixXd>& qd,
-                            const Eigen::Ref<const Eigen::MatrixXd>& effort,
-                            const SampleRules& rules = {});
+/// A repeat has the instant of the sample it repeats; one left out for its stamp lies between its
+/// neighbours in the recording. Without efforts, repeats are found by q and qd, and no start
+/// transient is looked for.
+///
+/// @throws EvaluationError: fewer than 2 samples; stamps that don't increase where that rule is off,
+///         or for more than half of the samples.
+SampleReport examineSamples(SampleTable& table, const SampleRules& rules = {});
+
+/// Makes positions of continuous joints go on where they jump by a turn from one sample to the next.
+///
+/// Such jumps of revolute joints stay as they are. Nothing changes if there are other joints than
+/// types: that is refused elsewhere.
+///
+/// @param joint_names  for the texts.
+/// @return a sentence for each revolute joint that jumps.
+std::vector<std::string> unwrapPositions(SampleTable& table,
+                                         const std::vector<chain_dynamics::JointType>& types,
+                                         const std::vector<std::string>& joint_names);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation
