@@ -34,6 +34,7 @@ from inverse_dynamics.errors import BagError
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from inverse_dynamics._core import Recording
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Clock
@@ -209,7 +210,7 @@ def _positions(
 
 
 def _positions_of_topic(
-    recording: bags.Recording, topic: str, joints: Sequence[str]
+    recording: Recording, topic: str, joints: Sequence[str]
 ) -> Iterator[tuple[tuple[str, ...], Floats]]:
     messages, published = 0, False
     for block in recording.joint_states(topic):
