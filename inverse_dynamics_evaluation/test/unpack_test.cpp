@@ -6,7 +6,6 @@
 #include <lz4frame.h>
 #include <zstd.h>
 
-#include <cstdlib>
 #include <string>
 
 #include "crc32.hpp"
@@ -14,7 +13,6 @@
 
 namespace inverse_dynamics_evaluation::unpack_test {
 
-using ::testing::HasSubstr;
 
 Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
 
@@ -42,14 +40,6 @@ Bytes unpackedLz4(const Bytes& packed) {
   return out;
 }
 
-// Sets the variable for the time of a test.
-struct Limit {
-  explicit Limit(const char* megabytes) { setenv("IDS_UNPACK_LIMIT_MB", megabytes, 1); }
-  ~Limit() { unsetenv("IDS_UNPACK_LIMIT_MB"); }
-  Limit(const Limit&) = delete;
-  Limit& operator=(const Limit&) = delete;
-};
-
 Bytes numbers(std::size_t size) {
   Bytes raw(size);
   for (std::size_t i = 0; i < size; ++i) raw[i] = static_cast<std::uint8_t>(i * i >> 7U);
@@ -64,13 +54,6 @@ TEST(Unpack, GivesBackWhatWasCompressed) {
   }
 }
 
-TEST(Unpack, ReadsFramesOneAfterAnother) {
-  Bytes two = zstdOf(bytesOf("small"));
-  const Bytes second = zstdOf(numbers(100'000));
-  two.insert(two.end(), second.begin(), second.end());
-  EXPECT_EQ(unpacked(two).size(), 100'005U);
-}
-
 TEST(Unpack, RefusesWhatIsCutOffOrNoise) {
   for (const Bytes& whole : {zstdOf(numbers(1000)), lz4Of(numbers(1000))}) {
     const bool is_lz4 = whole[0] == 0x04;
@@ -81,29 +64,6 @@ TEST(Unpack, RefusesWhatIsCutOffOrNoise) {
   }
   EXPECT_THROW(unpacked(numbers(100)), DamageError);
   EXPECT_THROW(unpackedLz4(numbers(100)), DamageError);
-}
-
-TEST(Unpack, StopsAtTheLimit) {
-  const Limit limit("1");
-  const Bytes bomb(2'000'000);
-  for (const auto& what : {errorOf<ReadingError>([&] { unpacked(zstdOf(bomb)); }),
-                           errorOf<ReadingError>([&] { unpackedLz4(lz4Of(bomb)); })}) {
-    EXPECT_THAT(what, HasSubstr("bytes unpacks to more than 1 MB: it is damaged, or made to fill "
-                                "memory or disk; if you trust it, raise the limit with "
-                                "IDS_UNPACK_LIMIT_MB"));
-  }
-  const Bytes raw = numbers(1'000'000);
-  EXPECT_EQ(unpacked(zstdOf(raw)), raw);
-}
-
-TEST(Unpack, LimitIsAWholeNumberOfMegabytes) {
-  EXPECT_EQ(mostUnpacked(1), 256'000'000U);
-  EXPECT_EQ(mostUnpacked(100'000'000), 5'000'000'000U);
-  for (const char* text : {"-1", "1.5", "many", "\xd9\xa3", "9999999999999"}) {
-    const Limit limit(text);
-    EXPECT_THAT(errorOf<ReadingError>([] { mostUnpacked(1); }),
-                HasSubstr("IDS_UNPACK_LIMIT_MB: expected a whole number of megabytes, got '"));
-  }
 }
 
 TEST(Crc32, HasThePublishedCheckValue) {
