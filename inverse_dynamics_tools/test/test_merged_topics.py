@@ -107,7 +107,7 @@ def test_the_topic_that_has_everything_is_taken(tmp_path):
 
 def test_an_arm_on_two_topics_is_evaluated_as_on_one(tmp_path):
     q, qd, qdd, stamps = motion()
-    effort = Solver(UR10, {}).torques(q, qd, qdd)
+    effort = Solver(UR10).torques(q, qd, qdd)
 
     def part(joints):
         rows = zip(stamps.tolist(), q, qd, effort, strict=True)
