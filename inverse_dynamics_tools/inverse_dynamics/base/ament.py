@@ -7,23 +7,13 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from inverse_dynamics import _core
+from inverse_dynamics._core import package_share
+from inverse_dynamics._core import resolved_path as resolve
 from inverse_dynamics.errors import PackageNotFoundError
 
-__all__ = [
-    "DATA_PACKAGE",
-    "PackageNotFoundError",
-    "package_roots",
-    "package_share",
-    "resolve",
-]
+__all__ = ["DATA_PACKAGE", "PackageNotFoundError", "package_roots", "package_share", "resolve"]
 
 DATA_PACKAGE = "inverse_dynamics_robots"  # run configurations, and where recordings are
-
-
-def package_share(package: str) -> Path:
-    """Directory `share/PACKAGE` of an installed package. Raises PackageNotFoundError."""
-    return _core.package_share(package)
 
 
 def package_roots(package: str, directory: Path) -> list[Path]:
@@ -40,12 +30,3 @@ def package_roots(package: str, directory: Path) -> list[Path]:
     for place in (*(Path(path) for path in listed if path), start, *start.parents):
         roots += [place, place / package] if place.name == package else [place / package]
     return roots
-
-
-def resolve(path: str, base: Path) -> Path:
-    """File that a path in a configuration names.
-
-    `package://PACKAGE/FILE`: below the share directory of an installed package; absolute; else
-    relative to the directory `base` of the configuration. Raises PackageNotFoundError, RobotError.
-    """
-    return _core.resolved_path(path, base)

@@ -61,11 +61,11 @@ def urdf_of_dh(text: str, file: str) -> str:
         mass = _number(row, "mass", guessed)
         if modified:
             lines += _fixed(parent, frame, (a, 0.0, 0.0), unit * alpha)
-            lines += _joint(row, number, (frame, link), d, unit * theta, unit)
+            lines += _joint(row, number, (frame, link), (d, theta), unit)
             lines += _link(link, mass, (0.0, 0.0, d / 2))
             parent = link
         else:
-            lines += _joint(row, number, (parent, link), 0.0, unit * theta, unit)
+            lines += _joint(row, number, (parent, link), (0.0, theta), unit)
             lines += _link(link, mass, (a / 2, 0.0, d / 2))
             lines += _fixed(link, frame, (a, 0.0, d), unit * alpha)
             parent = frame
@@ -117,9 +117,10 @@ def _fixed(parent: str, child: str, xyz: tuple[float, ...], alpha: float) -> lis
 
 
 def _joint(
-    row: Mapping, number: int, links: tuple[str, str], d: float, theta: float, unit: float
+    row: Mapping, number: int, links: tuple[str, str], place: tuple[float, float], unit: float
 ) -> list[str]:
-    """A joint about or along z, at `d` and turned by `theta`. unit: of limits of angles, rad."""
+    """A joint about or along z, at `place`: d, theta. unit: of angles, rad."""
+    d, theta = place
     kind, name, limits = (row.optional(key) for key in ("type", "name", "limits"))
     stated = kind.text(["revolute", "prismatic"]) if kind else "revolute"
     factor = unit if stated == "revolute" else 1.0
@@ -131,7 +132,7 @@ def _joint(
     return [
         f'  <joint name={called} type="{"continuous" if unlimited else stated}">',
         f'    <parent link="{links[0]}"/><child link="{links[1]}"/>',
-        f'    {_origin((0.0, 0.0, d), (0.0, 0.0, theta))}<axis xyz="0 0 1"/>',
+        f'    {_origin((0.0, 0.0, d), (0.0, 0.0, unit * theta))}<axis xyz="0 0 1"/>',
         f'    <limit lower="{ends[0]!r}" upper="{ends[1]!r}" velocity="{velocity!r}" effort="{effort!r}"/>',
         "  </joint>",
     ]

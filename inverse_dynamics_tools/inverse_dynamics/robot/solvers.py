@@ -50,16 +50,9 @@ def _check_links(robot: Robot, description: str, solver: _core.Solver) -> None:
 
 def _made(robot: Robot, description: str) -> _core.Solver:
     try:
-        return _core.Solver(
-            robot.plugin,
-            urdf=description,
-            root=robot.root,
-            tip=robot.tip,
-            gravity=robot.gravity,
-            friction=robot.friction,
-            model=None if robot.model is None else str(robot.model),
-            parameters=robot.parameters,
-        )
+        # without a description none is read, not even the robot's own
+        model = None if robot.model is None else str(robot.model)
+        return _core.Solver(replace(robot, urdf=None), urdf=description, model=model)
     except SolverError as error:
         at_fault = isinstance(error, InvalidRobotDescriptionError)
         where = f"robot {robot.name}" + (f" ({robot.urdf})" if at_fault else "")
