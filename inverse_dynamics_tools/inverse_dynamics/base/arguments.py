@@ -10,8 +10,9 @@ from __future__ import annotations
 import ast
 import os
 import re
+from contextlib import suppress
 from functools import wraps
-from inspect import Parameter, signature
+from inspect import Parameter, Signature, signature
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -34,16 +35,43 @@ def refused(
     function: the name of a function, of a method with its class (`Solver.torques`), or
     `Solver.__init__`.
     """
-    head = text.partition("\n")[0]
-    function = function.removesuffix(".__init__")
-    try:
-        error = _mistake(function, _bound_parameters(head), positional, named)
-    except SyntaxError:  # pybind11 writes C++ for types that it doesn't know
-        error = None
+    function, error = function.removesuffix(".__init__"), None
+    with suppress(AttributeError):
+        parameters = list(signature_of(text).parameters.values())
+        error = _mistake(function, parameters, positional, named)
     if error is None:
         types = ", ".join(_kind(value) for value in (*positional, *named.values()))
+        head = text.partition("\n")[0]
         error = f"{function}: arguments: expected {head}, got {types}"
     return ArgumentError(error)
+
+
+def signature_of(text: str) -> Signature:
+    """The signature that a docstring of pybind11 begins with; a default that is no literal is `...`.
+
+    Raises AttributeError where it isn't Python, as C++ is, which pybind11 writes for types that it doesn't know.
+    """
+    head = re.sub(r"= <[^>]*>", "= ...", text.partition("\n")[0])
+    try:
+        tree = ast.parse(f"def {head}: ...")
+    except SyntaxError as error:
+        raise AttributeError(f"no signature: {head}") from error
+    (definition,) = tree.body
+    assert isinstance(definition, ast.FunctionDef)
+    arguments = definition.args
+    arguments.defaults = [_literal(default) for default in arguments.defaults]
+    arguments.kw_defaults = [default and _literal(default) for default in arguments.kw_defaults]
+    names: dict[str, Any] = {}
+    exec(compile(tree, "signature", "exec", annotations.compiler_flag), names)
+    return signature(names[definition.name])
+
+
+def _literal(default: ast.expr) -> ast.expr:
+    try:
+        ast.literal_eval(default)
+    except ValueError:
+        return ast.copy_location(ast.Constant(...), default)
+    return default
 
 
 def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
@@ -99,27 +127,6 @@ def _mistake(
         elif not fits(given[parameter.name]):
             return f"{where}, got {_kind(given[parameter.name], of='three' in expected)}"
     return None
-
-
-def _bound_parameters(head: str) -> list[Parameter]:
-    """Parameters of a signature as pybind11 writes it: Python, but for enumerators."""
-    text = re.sub(r"= <[^>]*>", "= ...", head)
-    (definition,) = ast.parse(f"def {text}: ...").body
-    assert isinstance(definition, ast.FunctionDef)
-    places, named = definition.args.args, definition.args.kwonlyargs
-    required = len(places) - len(definition.args.defaults)
-    optional = [k >= required for k in range(len(places))]
-    optional += [default is not None for default in definition.args.kw_defaults]
-    kinds = [Parameter.POSITIONAL_OR_KEYWORD] * len(places) + [Parameter.KEYWORD_ONLY] * len(named)
-    return [
-        Parameter(
-            each.arg,
-            kind,
-            default=None if may_miss else Parameter.empty,
-            annotation=ast.unparse(each.annotation) if each.annotation else "",
-        )
-        for each, kind, may_miss in zip((*places, *named), kinds, optional, strict=True)
-    ]
 
 
 # ---------------------------------------------------------------- types
