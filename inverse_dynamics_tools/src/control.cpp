@@ -35,6 +35,14 @@ Reference referenceOf(const Vector& q, const Vector& qd, const Vector& qdd) {
   return reference;
 }
 
+/// An update of a law with these arguments: its torques, and how it ended.
+template <class Law, class... Arguments>
+Result updated(Law& law, const Arguments&... arguments) {
+  Vector tau(law.jointCount());
+  const Status status = law.update(arguments..., tau);
+  return {tau, status};
+}
+
 Result hold(ControlLaw& law, const Vector& q, const Vector& qd, double period) {
   Vector tau(law.jointCount());
   const Status status = law.hold(stateOf(q, qd), period, tau);
@@ -44,27 +52,26 @@ Result hold(ControlLaw& law, const Vector& q, const Vector& qd, double period) {
 Result computedTorque(ComputedTorque& law, const Vector& q, const Vector& qd,
                       const Vector& q_reference, const Vector& qd_reference,
                       const Vector& qdd_reference, double period) {
-  Vector tau(law.jointCount());
-  const Status status = law.update(
-      stateOf(q, qd), referenceOf(q_reference, qd_reference, qdd_reference), period, tau);
-  return {tau, status};
+  return updated(law, stateOf(q, qd), referenceOf(q_reference, qd_reference, qdd_reference),
+                 period);
 }
 
 Result gravityCompensation(GravityCompensation& law, const Vector& q, const Vector& qd,
                            double period, const std::optional<Vector>& qd_reference) {
-  Vector tau(law.jointCount());
-  const JointState state = stateOf(q, qd);
-  const Status status =
-      qd_reference ? law.update(state, *qd_reference, period, tau) : law.update(state, period, tau);
-  return {tau, status};
+  return qd_reference ? updated(law, stateOf(q, qd), *qd_reference, period)
+                      : updated(law, stateOf(q, qd), period);
 }
 
 Result pdGravityCompensation(PdGravityCompensation& law, const Vector& q, const Vector& qd,
                              const Vector& q_reference, const Vector& qd_reference, double period) {
-  Vector tau(law.jointCount());
-  const Reference reference = referenceOf(q_reference, qd_reference, Vector());
-  const Status status = law.update(stateOf(q, qd), reference, period, tau);
-  return {tau, status};
+  return updated(law, stateOf(q, qd), referenceOf(q_reference, qd_reference, Vector()), period);
+}
+
+Result feedForward(FeedForward& law, const Vector& q, const Vector& qd, const Vector& q_reference,
+                   const Vector& qd_reference, const Vector& qdd_reference, const Vector& effort,
+                   double period) {
+  return updated(law, stateOf(q, qd), referenceOf(q_reference, qd_reference, qdd_reference), effort,
+                 period);
 }
 
 // The error of a constructor for the same gains, where they aren't accepted.
@@ -74,15 +81,6 @@ void setGains(Law& law, const AnyGains& gains) {
   throw py::value_error("set_gains: expected " + std::to_string(law.jointCount()) +
                         " finite numbers that aren't negative for each of Kp and Kd; the gains "
                         "are as they were");
-}
-
-Result feedForward(FeedForward& law, const Vector& q, const Vector& qd, const Vector& q_reference,
-                   const Vector& qd_reference, const Vector& qdd_reference, const Vector& effort,
-                   double period) {
-  Vector tau(law.jointCount());
-  const Status status = law.update(
-      stateOf(q, qd), referenceOf(q_reference, qd_reference, qdd_reference), effort, period, tau);
-  return {tau, status};
 }
 
 void bindLawEnums(py::module_& module) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/pybind11.h>
 
+#include <cctype>
 #include <chain_dynamics/error.hpp>
 #include <cstring>
 #include <exception>
@@ -27,13 +28,32 @@ constexpr std::pair<const char*, const char*> kWords[] = {
     {"pass it to initialize() as third argument, or set the parameter 'robot_description' "
      "(without namespace)",
      "give a URDF (urdf)"},
-    {"setPayload: ", "set_payload: "},
     {"removePayload()", "remove_payload()"},
-    {"setGravity: ", "set_gravity: "},
-    {"setBaseAcceleration: ", "set_base_acceleration: "},
+    {"call getFrictionVector(q, qd), in Python ", "call "},
+    {"inertiaIsPhysical()", "inertia_is_physical"},
+    {", or ask hasEnergies() first", ""},
 };
 
-std::string inPython(std::string text) {
+/// `friction_vector: ...` of `getFrictionVectorBatch: ...`.
+std::string withPythonsMethod(const std::string& text) {
+  std::string method = text.substr(0, text.find_first_of(": "));
+  for (const std::string verb : {"get", "set", "remove", "clear"}) {
+    if (method.rfind(verb, 0) != 0 || std::isupper(method[verb.size()]) == 0) continue;
+    const std::string rest = text.substr(method.size());
+    const std::size_t batch = method.rfind("Batch");
+    method = method.substr(0, batch).substr(verb == "get" ? verb.size() : 0);
+    std::string snake;
+    for (const char c : method) {
+      if (std::isupper(c) != 0 && !snake.empty()) snake += '_';
+      snake += static_cast<char>(std::tolower(c));
+    }
+    return (snake == "tip_jacobian" ? "jacobian" : snake) + rest;
+  }
+  return text;
+}
+
+std::string inPython(const std::string& of_cpp) {
+  std::string text = withPythonsMethod(of_cpp);
   for (const auto& [cpp, python] : kWords) {
     const std::size_t at = text.find(cpp);
     if (at != std::string::npos) text.replace(at, std::strlen(cpp), python);
@@ -41,37 +61,34 @@ std::string inPython(std::string text) {
   return text;
 }
 
-void raise(const char* class_name, const std::exception& error) {
-  const py::object type = py::module_::import("inverse_dynamics.errors").attr(class_name);
+/// Raises the exception of Python for one of C++, if it is of that class.
+template <class Class>
+bool raisedIf(const std::exception& error, const char* name) {
+  if (dynamic_cast<const Class*>(&error) == nullptr) return false;
+  const py::object type = py::module_::import("inverse_dynamics.errors").attr(name);
   PyErr_SetObject(type.ptr(), textOf(inPython(error.what())).ptr());
+  return true;
 }
 
 void translate(std::exception_ptr thrown) {
+  namespace evaluation = inverse_dynamics_evaluation;
   if (!thrown) return;
   try {
     std::rethrow_exception(thrown);
-  } catch (const ids::PluginNotFoundException& e) {
-    raise("PluginNotFoundError", e);
-  } catch (const ids::ParameterUninitializedException& e) {
-    raise("ParameterMissingError", e);
-  } catch (const ids::InvalidRobotDescriptionException& e) {
-    raise("InvalidRobotDescriptionError", e);
-  } catch (const ids::InvalidParameterValueException& e) {
-    raise("InvalidParameterError", e);
-  } catch (const ids::SizeMismatchException& e) {
-    raise("SizeMismatchError", e);
-  } catch (const ids::Exception& e) {
-    raise("SolverError", e);
-  } catch (const inverse_dynamics_evaluation::EvaluationError& e) {
-    raise("EvaluationError", e);
-  } catch (const inverse_dynamics_evaluation::PackageNotFoundError& e) {
-    raise("PackageNotFoundError", e);
-  } catch (const inverse_dynamics_evaluation::ConfigurationError& e) {
-    raise("RobotError", e);
-  } catch (const inverse_dynamics_evaluation::RecordingError& e) {
-    raise("BagError", e);
-  } catch (const chain_dynamics::ModelError& e) {
-    raise("SolverError", e);
+  } catch (const std::exception& e) {  // a class before those that it is derived from
+    const bool known =
+        raisedIf<ids::PluginNotFoundException>(e, "PluginNotFoundError") ||
+        raisedIf<ids::ParameterUninitializedException>(e, "ParameterMissingError") ||
+        raisedIf<ids::InvalidRobotDescriptionException>(e, "InvalidRobotDescriptionError") ||
+        raisedIf<ids::InvalidParameterValueException>(e, "InvalidParameterError") ||
+        raisedIf<ids::SizeMismatchException>(e, "SizeMismatchError") ||
+        raisedIf<ids::Exception>(e, "SolverError") ||
+        raisedIf<evaluation::EvaluationError>(e, "EvaluationError") ||
+        raisedIf<evaluation::PackageNotFoundError>(e, "PackageNotFoundError") ||
+        raisedIf<evaluation::ConfigurationError>(e, "RobotError") ||
+        raisedIf<evaluation::RecordingError>(e, "BagError") ||
+        raisedIf<chain_dynamics::ModelError>(e, "SolverError");
+    if (!known) throw;
   }
 }
 
