@@ -2,7 +2,6 @@
 #include "solver_call.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <utility>
@@ -14,7 +13,8 @@ namespace {
 
 namespace py = pybind11;
 namespace ids = inverse_dynamics_solver;
-using Doubles = py::array_t<double, 0>;
+/// Doubles at addresses of doubles.
+using Doubles = py::array_t<double, py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
 Shape shapeOf(const py::array& array) { return {array.shape(), array.shape() + array.ndim()}; }
 
@@ -24,19 +24,6 @@ Shape stridesOf(const py::array& array) {
 
 std::string typeName(const py::handle& object) {
   return py::str(py::type::handle_of(object).attr("__name__"));
-}
-
-bool isAligned(const void* data) {
-  return reinterpret_cast<std::uintptr_t>(data) % alignof(double) == 0;
-}
-
-/// Whether an array of doubles can have its numbers where this one has them.
-bool standsAsDoubles(const py::array& array) {
-  bool stands = isAligned(array.data());
-  for (py::ssize_t i = 0; i < array.ndim(); ++i) {
-    stands = stands && array.strides(i) % static_cast<py::ssize_t>(sizeof(double)) == 0;
-  }
-  return stands;
 }
 
 /// For results: outOf() has made sure that they may be written.
@@ -69,39 +56,20 @@ bool overlap(const py::array& a, const py::array& b) {
   return py::module_::import("numpy").attr("shares_memory")(a, b).cast<bool>();
 }
 
-/// Whether two numbers of an array of doubles stand at one place: a zero step, or rows that
-/// overlap.
-bool overlapsItself(const py::array& array) {
-  if (array.size() < 2) return false;
-
-  // Differences of two numbers' places along all axes but the first; zero is the number itself.
-  std::vector<std::ptrdiff_t> offsets = {0};
-  for (py::ssize_t axis = 1; axis < array.ndim(); ++axis) {
-    const std::size_t count = offsets.size();
-    for (py::ssize_t i = 1; i < array.shape(axis); ++i) {
-      for (const std::ptrdiff_t sign : {-1, 1}) {
-        for (std::size_t k = 0; k < count; ++k) {
-          offsets.push_back(offsets[k] + sign * i * array.strides(axis));
-        }
-      }
-    }
+/// Whether two numbers of an array may stand at one place: unless each axis steps over all that the axes
+/// with smaller steps reach. Of axes that interleave without that, yes.
+bool mayOverlapItself(const py::array& array) {
+  std::vector<std::pair<py::ssize_t, py::ssize_t>> axes;  // bytes of a step, number of steps
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) {
+    if (array.shape(i) > 1) axes.emplace_back(std::abs(array.strides(i)), array.shape(i) - 1);
   }
-  if (std::count(offsets.begin(), offsets.end(), 0) > 1) return true;
-
-  // The first axis may be long: whether it reaches one of them.
-  const py::ssize_t step = array.strides(0), last = array.shape(0) - 1;
-  if (last == 0) return false;
-  return std::any_of(offsets.begin(), offsets.end(), [&](std::ptrdiff_t offset) {
-    if (offset == 0 || step == 0) return step == 0;
-    return offset % step == 0 && std::abs(offset / step) <= last;
-  });
-}
-
-/// Doubles at addresses of doubles, copied where they aren't.
-py::array asDoubles(py::array array) {
-  if (!py::isinstance<Doubles>(array)) array = py::array_t<double>(array);
-  if (!standsAsDoubles(array)) array = array.attr("copy")();
-  return array;
+  std::sort(axes.begin(), axes.end());
+  py::ssize_t reached = array.itemsize();
+  for (const auto& [step, count] : axes) {
+    if (step < reached) return array.size() > 0;
+    reached += step * count;
+  }
+  return false;
 }
 
 }  // namespace
@@ -147,7 +115,7 @@ py::array SolverCall::numbersFrom(const char* name, const py::object& values) co
 void SolverCall::input(const char* name, const py::object& values) {
   py::array array = numbersFrom(name, values);
   requireShape(name, array);
-  array = asDoubles(std::move(array));
+  array = Doubles::ensure(array);
 
   if (inputs_.empty()) {
     shape_ = shapeOf(array);
@@ -166,7 +134,7 @@ void SolverCall::wrench(const char* name, const py::object& values) {
                            : "(6,) or " + shapeText(perState({6})) + ", force and torque",
         shapeText(shape)));
   }
-  inputs_.push_back({name, asDoubles(std::move(array))});
+  inputs_.push_back({name, Doubles::ensure(array)});
 }
 
 // ---------------------------------------------------------------- results
@@ -181,10 +149,10 @@ py::array SolverCall::outOf(const std::string& name, const py::object& out,
         ids::errorText(place(name), "wrong shape", shapeText(shape), shapeText(shapeOf(array))));
   }
   if (!array.writeable()) refuse(name, "an array that may be written to", "a read-only one");
-  if (!standsAsDoubles(array)) {
+  if ((array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_) == 0) {
     refuse(name, "an array at addresses of doubles", "fields of a packed record");
   }
-  if (overlapsItself(array)) {
+  if (mayOverlapItself(array)) {
     refuse(
         name, "a place in memory for each number",
         "an array whose entries overlap, with strides " + shapeText(stridesOf(array)) + " bytes");

@@ -84,12 +84,6 @@ def test_any_layout_of_one_state_gives_the_same_bits(ur10, layout):
     np.testing.assert_array_equal(ur10.torques(*given), expected)
 
 
-def test_layouts_of_arguments_may_differ(ur10):
-    q, qd, qdd = motion().values()
-    result = ur10.torques(np.asfortranarray(q), qd, qdd[::-1].copy()[::-1])
-    np.testing.assert_array_equal(result, ur10.torques(q, qd, qdd))
-
-
 @pytest.mark.parametrize("quantity", ARGUMENTS)
 @pytest.mark.parametrize("shape", [(6,), (STATES, 6)], ids=["one state", "many"])
 def test_results_are_written_into_the_callers_arrays(ur10, quantity, shape):
@@ -120,27 +114,12 @@ def test_matrices_of_the_caller_may_have_any_layout(ur10, make):
     np.testing.assert_array_equal(out, ur10.inertia_matrix(q))
 
 
-@pytest.mark.parametrize("layout", ["columns", "every second", "reversed", "one of several"])
-def test_vectors_of_the_caller_may_have_any_layout(ur10, layout):
-    states, out = motion(), LAYOUTS[layout](np.zeros((STATES, 6)))
-    assert ur10.torques(*states.values(), out=out) is out
-    np.testing.assert_array_equal(out, ur10.torques(*states.values()))
-
-
 def test_arguments_and_result_may_stand_side_by_side(ur10):
     states = motion()
     log = np.zeros((STATES, 4, 6))
     log[:, :3] = np.stack(list(states.values()), axis=1)
     ur10.torques(log[:, 0], log[:, 1], log[:, 2], out=log[:, 3])
     np.testing.assert_array_equal(log[:, 3], ur10.torques(*states.values()))
-
-
-def test_part_of_an_array_of_the_caller_may_take_the_result(ur10):
-    q = motion()["q"]
-    log = np.full((STATES + 2, 6), 7.0)
-    ur10.gravity_vector(q, out=log[1:-1])
-    np.testing.assert_array_equal(log[1:-1], ur10.gravity_vector(q))
-    assert (log[[0, -1]] == 7.0).all()
 
 
 # Copies. An array larger than what malloc may have at hand (64 MB) always needs new address space.
@@ -226,7 +205,7 @@ def test_a_place_whose_matrices_overlap_is_an_error(ur10, strides):
         ur10.inertia_matrix(np.zeros((100, 6)), out=strided((100, 6, 6), strides))
 
 
-@pytest.mark.parametrize("strides", [(6, 1), (1, 100), (-6, 1), (6, -1), (7, 100), (5, 7)])
+@pytest.mark.parametrize("strides", [(6, 1), (1, 100), (-6, 1), (6, -1), (7, 100)])
 def test_a_place_with_interleaved_rows_takes_the_result(ur10, strides):
     q = np.random.default_rng(3).uniform(-2, 2, size=(5, 6))
     memory = np.zeros(2000)
