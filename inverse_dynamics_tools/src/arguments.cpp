@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <deque>
+#include <pybind11/pybind11.h>
+#include <structmember.h>
+
+#include <cstddef>
 #include <string>
 
 #include "bindings.hpp"
@@ -9,12 +12,21 @@ namespace {
 
 namespace py = pybind11;
 
-/// A bound function, with what Python keeps pointers to.
-struct Explained {
-  py::object function;
-  std::string name, doc;  // Solver.torques
-  PyMethodDef definition;
+/// A bound function or method as Python has it: with a signature, and errors that name arguments.
+struct Function {
+  PyObject_HEAD vectorcallfunc call;
+  PyObject* bound;  // pybind11's, whose docstring begins with the signature
+  PyObject* name;   // torques
+  PyObject* place;  // Solver.torques
 };
+
+const Function& functionAt(PyObject* self) { return *reinterpret_cast<Function*>(self); }
+
+py::object inArguments(const char* function) {
+  return py::module_::import("inverse_dynamics.base.arguments").attr(function);
+}
+
+py::str docOf(const Function& function) { return py::handle(function.bound).attr("__doc__"); }
 
 /// Whether the current exception is pybind11's own about arguments.
 bool refusesArguments() {
@@ -28,7 +40,7 @@ bool refusesArguments() {
 }
 
 /// The exception for a call, made by inverse_dynamics.base.arguments from the function's signature.
-void raiseRefusal(const Explained& explained, PyObject* const* arguments, Py_ssize_t count,
+void raiseRefusal(const Function& function, PyObject* const* arguments, Py_ssize_t count,
                   PyObject* names) {
   py::list positional;
   for (Py_ssize_t i = 0; i < count; ++i) positional.append(py::handle(arguments[i]));
@@ -36,39 +48,83 @@ void raiseRefusal(const Explained& explained, PyObject* const* arguments, Py_ssi
   for (Py_ssize_t i = 0; names != nullptr && i < PyTuple_GET_SIZE(names); ++i) {
     named[py::handle(PyTuple_GET_ITEM(names, i))] = py::handle(arguments[count + i]);
   }
-  const py::object refused = py::module_::import("inverse_dynamics.base.arguments").attr("refused");
-  const py::object error = refused(explained.name, explained.doc, positional, named);
+  const py::object error =
+      inArguments("refused")(py::handle(function.place), docOf(function), positional, named);
   PyErr_SetObject(py::type::handle_of(error).ptr(), error.ptr());
 }
 
-extern "C" PyObject* callExplained(PyObject* self, PyObject* const* arguments, Py_ssize_t count,
-                                   PyObject* names) {
-  const auto& explained = *static_cast<Explained*>(PyCapsule_GetPointer(self, nullptr));
-  const auto size = static_cast<std::size_t>(count);
-  PyObject* const result = PyObject_Vectorcall(explained.function.ptr(), arguments, size, names);
+/// What made() returns, or null where it raises.
+template <class Make>
+PyObject* orRaised(const Make& made) {
   try {
-    if (result == nullptr && refusesArguments()) {
-      PyErr_Clear();
-      raiseRefusal(explained, arguments, count, names);
-    }
+    return made().release().ptr();
   } catch (py::error_already_set& error) {
     error.restore();
+    return nullptr;
   }
-  return result;
 }
 
-py::object explained(const py::object& function, const std::string& name) {
-  static auto& all = *new std::deque<Explained>;  // as long as the module: to the end
-  const std::string doc = py::str(function.attr("__doc__"));
-  Explained& one = all.emplace_back(Explained{function, name, doc, {}});
-  const std::size_t point = name.rfind('.');
-  one.definition = {one.name.c_str() + (point == std::string::npos ? 0 : point + 1),
-                    reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&callExplained)),
-                    METH_FASTCALL | METH_KEYWORDS, one.doc.c_str()};
-  const py::capsule self(static_cast<const void*>(&one));
-  const auto module = py::str("inverse_dynamics._core");
-  return py::reinterpret_steal<py::object>(
-      PyCFunction_NewEx(&one.definition, self.ptr(), module.ptr()));
+extern "C" PyObject* callFunction(PyObject* self, PyObject* const* arguments, std::size_t count,
+                                  PyObject* names) {
+  const Function& function = functionAt(self);
+  PyObject* const result = PyObject_Vectorcall(function.bound, arguments, count, names);
+  if (result != nullptr) return result;
+  return orRaised([&] {
+    if (refusesArguments()) {
+      PyErr_Clear();
+      raiseRefusal(function, arguments, PyVectorcall_NARGS(count), names);
+    }
+    return py::object();
+  });
+}
+
+extern "C" PyObject* bindToObject(PyObject* self, PyObject* object, PyObject* /*type*/) {
+  if (object != nullptr && object != Py_None) return PyMethod_New(self, object);
+  Py_INCREF(self);
+  return self;
+}
+
+extern "C" PyObject* signatureOfFunction(PyObject* self, void* /*unused*/) {
+  return orRaised([&] { return inArguments("signature_of")(docOf(functionAt(self))); });
+}
+
+extern "C" PyObject* textOfFunction(PyObject* self, void* /*unused*/) {
+  return orRaised(
+      [&] { return py::object(docOf(functionAt(self)).attr("partition")("\n\n")[py::int_(2)]); });
+}
+
+/// The class of Function. Its objects are as old as the module.
+py::handle functionType() {
+  static PyMemberDef members[] = {
+      {"__vectorcalloffset__", T_PYSSIZET, offsetof(Function, call), READONLY, nullptr},
+      {"__name__", T_OBJECT, offsetof(Function, name), READONLY, nullptr},
+      {"__qualname__", T_OBJECT, offsetof(Function, place), READONLY, nullptr},
+      {}};
+  static PyGetSetDef properties[] = {
+      {"__signature__", &signatureOfFunction, nullptr, nullptr, nullptr},
+      {"__doc__", &textOfFunction, nullptr, nullptr, nullptr},
+      {}};
+  static PyType_Slot slots[] = {{Py_tp_call, reinterpret_cast<void*>(&PyVectorcall_Call)},
+                                {Py_tp_descr_get, reinterpret_cast<void*>(&bindToObject)},
+                                {Py_tp_members, members},
+                                {Py_tp_getset, properties},
+                                {}};
+  static PyType_Spec spec = {
+      "inverse_dynamics._core.function", sizeof(Function), 0,
+      Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_VECTORCALL | Py_TPFLAGS_METHOD_DESCRIPTOR, slots};
+  static PyObject* const type = PyType_FromSpec(&spec);
+  if (type == nullptr) throw py::error_already_set();
+  return type;
+}
+
+py::object explained(const py::object& bound, const std::string& place) {
+  auto* const function =
+      PyObject_New(Function, reinterpret_cast<PyTypeObject*>(functionType().ptr()));
+  function->call = &callFunction;
+  function->bound = py::object(bound).release().ptr();
+  function->name = py::str(place.substr(place.rfind('.') + 1)).release().ptr();
+  function->place = py::str(place).release().ptr();
+  return py::reinterpret_steal<py::object>(reinterpret_cast<PyObject*>(function));
 }
 
 // Instead of memory for an object that isn't there.
@@ -87,10 +143,9 @@ void explainMethods(const py::object& type) {
     const bool is_static = PyObject_TypeCheck(value.ptr(), &PyStaticMethod_Type) != 0;
     if (!is_static && PyInstanceMethod_Check(value.ptr()) == 0) continue;
     const py::object function = explained(value.attr("__func__"), owner + "." + name);
-    py::setattr(
-        type, name.c_str(),
-        py::reinterpret_steal<py::object>(is_static ? PyStaticMethod_New(function.ptr())
-                                                    : PyInstanceMethod_New(function.ptr())));
+    py::setattr(type, name.c_str(),
+                is_static ? py::reinterpret_steal<py::object>(PyStaticMethod_New(function.ptr()))
+                          : function);
   }
 }
 

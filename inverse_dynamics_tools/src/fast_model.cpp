@@ -35,8 +35,16 @@ constexpr Index kParameters = 10;
 
 class FastModel {
  public:
-  FastModel(const chain_dynamics::Model& model, std::int64_t threads)
-      : model_(model), names_(model.chain.jointNames()), threads_(threads), fast_(model) {
+  static constexpr const char* kExample =
+      "FastModel.from_urdf(load_robot(\"ur10_simulated\").urdf)";
+
+  FastModel(const chain_dynamics::Model& model, std::int64_t threads, const std::string& urdf = "",
+            const std::string& root = "")
+      : model_(model),
+        names_(model.chain.jointNames()),
+        threads_(threads),
+        fast_(model),
+        frames_(urdf, {root, names_, {}}) {
     if (threads < 1) {
       throw ids::InvalidParameterValueException(
           ids::errorText("FastModel: argument threads", "", "1 or more", std::to_string(threads)));
@@ -47,6 +55,7 @@ class FastModel {
   const chain_dynamics::Model& model() const { return model_; }
   std::int64_t threads() const { return threads_; }
   const chain_dynamics::FastModel& fast() const { return fast_; }
+  const Frames& frames() const { return frames_; }
 
   template <class OfPart>
   void compute(const SolverCall& call, const OfPart& of_part) const {
@@ -62,6 +71,7 @@ class FastModel {
   std::vector<std::string> names_;
   std::int64_t threads_;
   chain_dynamics::FastModel fast_;
+  Frames frames_;
 };
 
 using Numbers3 = std::array<double, 3>;
@@ -85,7 +95,8 @@ std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& 
   options.tip = tip;
   if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
   return std::make_unique<FastModel>(
-      chain_dynamics::Model(chain_dynamics::chainFromUrdf(urdf.text, options)), threads);
+      chain_dynamics::Model(chain_dynamics::chainFromUrdf(urdf.text, options)), threads, urdf.text,
+      root);
 }
 
 std::unique_ptr<FastModel> fromFile(const std::string& path, std::int64_t threads) {
@@ -168,63 +179,67 @@ void bindMaking(py::class_<FastModel>& model) {
   model
       .def_static("from_urdf", &fromUrdf, py::arg("urdf"), py::kw_only(), py::arg("root") = "",
                   py::arg("tip") = "", gravity = py::none(), threads = 1,
-                  "Of a URDF: its text, or the path of a .urdf or .xacro file; without the\n"
-                  "friction that it states.")
+                  R"(Of a URDF, without the friction that it states.
+
+Parameters
+----------
+urdf : str or path
+    Text of the description, or path of a .urdf or .xacro file.
+root, tip : str, optional
+    Links between which the chain is; by default the first and the last.
+gravity : sequence of 3 floats, optional
+    m/s^2, in the axes of the root link.
+threads : int, optional
+    Among how many a large batch is shared.)")
       .def_static("from_file", &fromFile, py::arg("path"), py::kw_only(), threads = 1,
                   "Of a model file, with its friction.")
       .def_static("from_joints", &fromJoints, py::arg("names"), py::arg("prismatic"),
                   py::arg("rotations"), py::arg("offsets"), py::arg("links"), py::kw_only(),
                   gravity, threads = 1,
-                  "Of joints about or along z of their links' frames: (n, 3, 3) and (n, 3), of\n"
-                  "each frame in the one before, and (n, 10) parameters of the links.");
+                  R"(Of joints about or along z of their links' frames.
+
+Parameters
+----------
+names, prismatic : sequences of n
+rotations, offsets : array_like, (n, 3, 3) and (n, 3)
+    Of each frame in the one before; m.
+links : array_like, (n, 10)
+    m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz of each link, in its frame, about its origin.
+gravity : sequence of 3 floats
+    m/s^2.
+threads : int, optional
+    Among how many a large batch is shared.)");
 }
 
 void bindQuantities(py::class_<FastModel>& model) {
   using M = const FastModel&;
   using Part = const PartOfCall&;
   Quantities<FastModel>(model)
+      .add(kTorques,
+           [](M m, Part p) { m.fast().torquesBatch(p.in(0), p.in(1), p.in(2), p.states(0)); })
+      .add(kInertiaMatrix, [](M m, Part p) { m.fast().inertiaMatrixBatch(p.in(0), p.matrices(0)); })
+      .add(kCoriolisVector,
+           [](M m, Part p) { m.fast().coriolisVectorBatch(p.in(0), p.in(1), p.states(0)); })
+      .add(kGravityVector, [](M m, Part p) { m.fast().gravityVectorBatch(p.in(0), p.states(0)); })
+      .add(kAccelerations,
+           [](M m, Part p) {
+             m.fast().forwardDynamicsBatch(p.in(0), p.in(1), p.in(2), p.states(0));
+           })
+      .add(kTorqueDerivatives,
+           [](M m, Part p) {
+             m.fast().torqueDerivativesBatch(p.in(0), p.in(1), p.in(2), p.matrices(0),
+                                             p.matrices(1), p.matrices(2));
+           })
+      .add(kCoriolisMatrix,
+           [](M m, Part p) { m.fast().coriolisMatrixBatch(p.in(0), p.in(1), p.matrices(0)); })
+      .add(kTipPose,
+           [](M m, Part p) { m.fast().tipPoseBatch(p.in(0), p.matrices(0), p.states(1)); })
       .add(
-          "torques", std::array{"q", "qd", "qdd"}, std::array{kPerJoint},
-          [](M m, Part p) { m.fast().torquesBatch(p.in(0), p.in(1), p.in(2), p.states(0)); },
-          "tau = H qdd + C qd + g + f, friction included.")
-      .add(
-          "forward_dynamics", std::array{"q", "qd", "tau"}, std::array{kPerJoint},
-          [](M m, Part p) {
-            m.fast().forwardDynamicsBatch(p.in(0), p.in(1), p.in(2), p.states(0));
-          },
-          "Accelerations under these torques, friction subtracted.")
-      .add(
-          "torque_derivatives", std::array{"q", "qd", "qdd"},
-          std::array{kJointByJoint, kJointByJoint, kJointByJoint},
-          [](M m, Part p) {
-            m.fast().torqueDerivativesBatch(p.in(0), p.in(1), p.in(2), p.matrices(0), p.matrices(1),
-                                            p.matrices(2));
-          },
-          "dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n): entry (i, j) is that of\n"
-          "tau_i by joint j.")
-      .add(
-          "coriolis_matrix", std::array{"q", "qd"}, std::array{kJointByJoint},
-          [](M m, Part p) { m.fast().coriolisMatrixBatch(p.in(0), p.in(1), p.matrices(0)); },
-          "C of Christoffel's symbols, (n, n) or (N, n, n): C qd is the Coriolis vector, and\n"
-          "dH/dt = C + C'.")
-      .add(
-          "tip_pose", std::array{"q"}, std::array{kRotation, kVector3},
-          [](M m, Part p) { m.fast().tipPoseBatch(p.in(0), p.matrices(0), p.states(1)); },
-          "Rotation R, (3, 3) or (N, 3, 3), and position p [m], (3,) or (N, 3), of the tip in\n"
-          "the root frame.")
-      .add(
-          "tip_jacobian", std::array{"q"}, std::array{kJacobian},
-          [](M m, Part p) { m.fast().tipJacobianBatch(p.in(0), p.matrices(0)); },
-          "J, (6, n) or (N, 6, n): J qd is the velocity of the tip's origin, then its angular\n"
-          "velocity, in the axes of the root frame.")
-      .add(
-          "tip_jacobian_derivative", std::array{"q", "qd"}, std::array{kJacobian},
-          [](M m, Part p) { m.fast().tipJacobianDerivativeBatch(p.in(0), p.in(1), p.matrices(0)); },
-          "Derivative of J by time: the tip's acceleration is J qdd + dJ qd.")
-      .add(
-          "regressor", std::array{"q", "qd", "qdd"}, std::array{kRegressor},
-          [](M m, Part p) { m.fast().regressorBatch(p.in(0), p.in(1), p.in(2), p.matrices(0)); },
-          "Y, (n, 10 n) or (N, n, 10 n): tau = Y parameters + rotor inertia qdd + friction.");
+          kTipJacobianDerivative,
+          [](M m, Part p) { m.fast().tipJacobianDerivativeBatch(p.in(0), p.in(1), p.matrices(0)); })
+      .add(kRegressor,
+           [](M m, Part p) { m.fast().regressorBatch(p.in(0), p.in(1), p.in(2), p.matrices(0)); })
+      .addJacobian([](M m, Part p) { m.fast().tipJacobianBatch(p.in(0), p.matrices(0)); });
 }
 
 }  // namespace
@@ -232,10 +247,16 @@ void bindQuantities(py::class_<FastModel>& model) {
 void bindFastModel(py::module_& module) {
   py::class_<FastModel> model(
       module, "FastModel",
-      "The engine without a plugin, of many states at a time.\n\n"
-      "Arrays are (n,), one state, or (N, n), one row per state.\n"
-      "threads: among how many a large batch is shared. Threads: safe; the GIL\n"
-      "is released.");
+      R"(The engine without a plugin, made by from_urdf(), from_file() or from_joints().
+
+Arrays are (n,), one state, or (N, n), one row per state. Threads: safe; the GIL is released.
+
+Examples
+--------
+>>> from inverse_dynamics import FastModel, load_robot
+>>> arm = FastModel.from_urdf(load_robot("ur10_simulated").urdf, threads=2)
+>>> arm.torques([0.5] * 6, [0] * 6, [0] * 6).shape
+(6,))");
   bindMaking(model);
   bindQuantities(model);
   model

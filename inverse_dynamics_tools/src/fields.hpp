@@ -11,6 +11,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <optional>
@@ -123,11 +124,24 @@ void defineConstructor(pybind11::class_<T>& of, const char* doc, std::index_sequ
              std::tuple_cat(argument(std::integral_constant<std::size_t, I>(), fields)...));
 }
 
+/// A docstring of numpydoc's style: of a class, and of its fields that have one.
+template <class... Fields>
+std::string documented(const std::string& doc, const Fields&... fields) {
+  std::string text;
+  const auto add = [&text](const auto& field) {
+    if (*field.doc != 0) text += std::string(field.name) + "\n    " + field.doc + "\n";
+  };
+  (add(fields), ...);
+  if (text.empty()) return doc;
+  const std::size_t end = std::min(doc.find("\n\nExamples\n"), doc.size());
+  return doc.substr(0, end) + "\n\nParameters\n----------\n" + text + doc.substr(end);
+}
+
 /// Options: attributes that can be set. `meanings`: of the constructor.
 template <std::size_t Required = 1, class T, class... Gots, class... Givens>
 pybind11::class_<T> bindOptions(pybind11::module_& module, const char* name, const char* doc,
                                 const char* meanings, const Field<T, Gots, Givens>&... fields) {
-  pybind11::class_<T> options(module, name, doc);
+  pybind11::class_<T> options(module, name, documented(doc, fields...).c_str());
   defineConstructor<Required>(options, meanings, std::index_sequence_for<Gots...>(), fields...);
   (options.def_property(fields.name, fields.get, fields.set, fields.doc), ...);
   return options;
@@ -139,7 +153,7 @@ template <std::size_t Required = 0, class T, class... Gots, class... Givens>
 pybind11::class_<T> bindRecord(pybind11::module_& module, const char* name, const char* doc,
                                const Field<T, Gots, Givens>&... fields) {
   namespace py = pybind11;
-  py::class_<T> record(module, name, doc);
+  py::class_<T> record(module, name, documented(doc, fields...).c_str());
   defineConstructor<Required>(record, "", std::index_sequence_for<Gots...>(), fields...);
   (record.def_property_readonly(fields.name, fields.get, fields.doc), ...);
   const auto dict_of = [fields...](const T& t) {

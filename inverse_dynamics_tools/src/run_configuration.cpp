@@ -41,8 +41,17 @@ auto pathField(const char* name, std::string Robot::*member, const char* doc) {
 void bindRobot(py::module_& module) {
   bindRecord<4>(
       module, "Robot",
-      "One run configuration. Empty text or None: not stated, so the solver's own default.\n\n"
-      "Its fields can't be set: dataclasses.replace() makes a changed copy.",
+      R"(One run configuration. Empty text or None: not stated, so the solver's own default.
+
+Its fields can't be set: dataclasses.replace() makes a changed copy.
+
+Examples
+--------
+>>> from dataclasses import replace
+>>> from inverse_dynamics import load_robot
+>>> robot = replace(load_robot("ur10_simulated"), gravity=(0.0, 0.0, -1.62))
+>>> robot.solver()
+<Solver kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL: 6 joints, shoulder_pan_joint to wrist_3_joint>)",
       Field{"name", &Robot::name}, Field{"description", &Robot::description, "one line"},
       pathField<FilePath>("file", &Robot::file, "where it is from"),
       Field{"plugin", &Robot::plugin, "package/Class of the solver"},
@@ -112,15 +121,36 @@ evaluation::EffortOptions effortOptions(const Robot& robot, const SolverObject& 
 void bindRunConfiguration(py::module_& module) {
   bindRobot(module);
   module.def("robot_names", &evaluation::robotNames,
-             "Names of the robots that the sourced workspaces bring.");
+             R"(Names of the robots that the sourced workspaces bring.
+
+Examples
+--------
+>>> from inverse_dynamics import robot_names
+>>> "ur10_real" in robot_names()
+True)");
   module.def(
       "load_robot",
       [](const PathText& name_or_file) {
         return evaluation::readRunConfiguration(name_or_file.bytes);
       },
       py::arg("name_or_file"),
-      "Run configuration by the name of one of robot_names(), or from a file.\n\n"
-      "What ends in .yaml or .yml, or has a directory, is a file. Raises RobotError.");
+      R"(Run configuration by name or from a file.
+
+Parameters
+----------
+name_or_file : str or path
+    One of robot_names(); what ends in .yaml or .yml, or has a directory, is a file.
+
+Raises
+------
+RobotError
+    It isn't there, or isn't right.
+
+Examples
+--------
+>>> from inverse_dynamics import load_robot
+>>> load_robot("ur10_real").joints[:2]
+('shoulder_pan_joint', 'shoulder_lift_joint'))");
   module.def(
       "with_changes", &withChanges, py::arg("robot"),
       "The run configuration with all fields replaced for which something is given, not None.\n\n"

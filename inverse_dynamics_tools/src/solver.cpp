@@ -65,18 +65,34 @@ void warn(const std::string& text) {
   }
 }
 
+/// The chain between whose joints and links Jacobians are asked for.
+FramesOf framesOf(const ParameterValues& parameters, std::vector<std::string> joints) {
+  const std::string locked = "locked_joints.";
+  FramesOf of{"", std::move(joints), {}};
+  for (const auto& [name, value] : parameters) {
+    const auto* const position = std::get_if<double>(&value);
+    if (name == "root") of.root = std::get<std::string>(value);
+    if (position && name.rfind(locked, 0) == 0) of.locked[name.substr(locked.size())] = *position;
+  }
+  return of;
+}
+
 class Solver {
  public:
+  static constexpr const char* kExample = "Solver(urdf=load_robot(\"ur10_simulated\").urdf)";
+
   explicit Solver(Origin origin) : origin_(std::move(origin)) {
     const py::gil_scoped_release release;
     solver_ = ids::SolverLoader().load(origin_.plugin);
     solver_->initialize(ids::Parameters(origin_.parameters).strict(), "", origin_.urdf);
+    frames_ = std::make_unique<Frames>(origin_.urdf, framesOf(origin_.parameters, joints()));
   }
 
   const Origin& origin() const { return origin_; }
   const ids::InverseDynamicsSolver& get() const { return *solver_; }
   std::shared_ptr<const ids::InverseDynamicsSolver> shared() const { return solver_; }
   const std::vector<std::string>& joints() const { return solver_->jointNames(); }
+  const Frames& frames() const { return *frames_; }
 
   /// What only some solvers can; null: this one can't.
   template <class Capability>
@@ -108,6 +124,7 @@ class Solver {
  private:
   Origin origin_;
   std::shared_ptr<ids::InverseDynamicsSolver> solver_;
+  std::unique_ptr<const Frames> frames_;
 };
 
 // ---------------------------------------------------------------- torques
@@ -123,20 +140,24 @@ void withWrenches(const ids::ConstStates& wrenches, const std::string& frame,
   }
 }
 
-void requireFrame(const std::string& method, const std::string& frame) {
-  if (frame == "root" || frame == "tip") return;
-  throw ids::InvalidParameterValueException(
-      ids::errorText(method + ": argument frame", "",
-                     "'root' or 'tip': whose axes the wrench is expressed in", "'" + frame + "'"));
+/// Who computes with the wrench, which becomes the last argument of the call.
+const ids::ExternalWrench& contactOf(const Solver& solver, SolverCall& call,
+                                     const py::object& wrench, const std::string& frame) {
+  const auto& contact = solver.as<ids::ExternalWrench>(call.method());
+  if (frame != "root" && frame != "tip") {
+    throw ids::InvalidParameterValueException(ids::errorText(
+        call.method() + std::string(": argument frame"), "",
+        "'root' or 'tip': whose axes the wrench is expressed in", "'" + frame + "'"));
+  }
+  call.wrench("wrench", wrench);
+  return contact;
 }
 
 Floats externalTorques(const Solver& solver, const ArrayLike& q, const ArrayLike& wrench,
                        const std::string& frame, const MaybeFloats& out) {
-  const auto& contact = solver.as<ids::ExternalWrench>("external_torques");
-  requireFrame("external_torques", frame);
   SolverCall call("external_torques", solver.joints());
   call.input("q", q);
-  call.wrench("wrench", wrench);
+  const auto& contact = contactOf(solver, call, wrench, frame);
   call.result("out", out, {solver.get().jointCount()});
   call.run([&] {
     withWrenches(call.in(1), frame, [&](const auto& wrenches) {
@@ -157,19 +178,15 @@ Floats torques(const Solver& solver, const ArrayLike& q, const ArrayLike& qd, co
   call.input("q", q);
   call.input("qd", qd);
   call.input("qdd", qdd);
-  if (wrench.is_none()) {
-    call.result("out", out, {solver.get().jointCount()});
-    call.run(
-        [&] { solver.get().getTorquesBatch(call.in(0), call.in(1), call.in(2), call.states(0)); });
-    return call.array(0);
-  }
-  const auto& contact = solver.as<ids::ExternalWrench>("torques");
-  requireFrame("torques", frame);
-  call.wrench("wrench", wrench);
+  const auto* const contact = wrench.is_none() ? nullptr : &contactOf(solver, call, wrench, frame);
   call.result("out", out, {solver.get().jointCount()});
+  const auto in = [&call](std::size_t i) { return call.in(i); };
   call.run([&] {
-    withWrenches(call.in(3), frame, [&](const auto& wrenches) {
-      contact.getTorquesBatch(call.in(0), call.in(1), call.in(2), wrenches, call.states(0));
+    if (contact == nullptr) {
+      return solver.get().getTorquesBatch(in(0), in(1), in(2), call.states(0));
+    }
+    withWrenches(in(3), frame, [&](const auto& wrenches) {
+      contact->getTorquesBatch(in(0), in(1), in(2), wrenches, call.states(0));
     });
   });
   return call.array(0);
@@ -217,104 +234,107 @@ ThreeFloats dynamicComponents(const Solver& solver, const ArrayLike& q, const Ar
   return {call.array(0), call.array(1), call.array(2)};
 }
 
-/// What each solver has for each state.
+// ---------------------------------------------------------------- capabilities
+
+inline constexpr Quantity kKineticEnergy{"kinetic_energy",
+                                         std::array{"q", "qd"},
+                                         std::array{kScalar},
+                                         {"1/2 qd^T H qd [J], where H is symmetric.", "() or (N,)",
+                                          "arm.kinetic_energy(q, qd).shape\n(100,)"}};
+inline constexpr Quantity kPotentialEnergy{
+    "potential_energy",
+    std::array{"q"},
+    std::array{kScalar},
+    {"Of gravity [J], where H is symmetric; zero where all masses are at the root's origin.",
+     "() or (N,)", "arm.potential_energy(q).shape\n(100,)"}};
+
+/// What is one expression of states.
 void bindQuantities(py::class_<Solver>& solver) {
   using S = const Solver&;
   using Part = const PartOfCall&;
   Quantities<Solver>(solver)
-      .add(
-          "inertia_matrix", std::array{"q"}, std::array{kJointByJoint},
-          [](S s, Part p) { s.get().getInertiaMatrixBatch(p.in(0), p.matrices(0)); },
-          "H(q), (n, n) or (N, n, n).")
-      .add(
-          "coriolis_vector", std::array{"q", "qd"}, std::array{kPerJoint},
-          [](S s, Part p) { s.get().getCoriolisVectorBatch(p.in(0), p.in(1), p.states(0)); },
-          "C(q, qd) qd.")
-      .add(
-          "gravity_vector", std::array{"q"}, std::array{kPerJoint},
-          [](S s, Part p) { s.get().getGravityVectorBatch(p.in(0), p.states(0)); },
-          "g(q): what holds the robot still.");
+      .add(kInertiaMatrix,
+           [](S s, Part p) { s.get().getInertiaMatrixBatch(p.in(0), p.matrices(0)); })
+      .add(kCoriolisVector,
+           [](S s, Part p) { s.get().getCoriolisVectorBatch(p.in(0), p.in(1), p.states(0)); })
+      .add(kGravityVector, [](S s, Part p) { s.get().getGravityVectorBatch(p.in(0), p.states(0)); })
+      .add(kTipPose,
+           [](S s, Part p) {
+             s.as<ids::Kinematics>(p).getTipPoseBatch(p.in(0), p.matrices(0), p.states(1));
+           })
+      .add(kTipJacobianDerivative,
+           [](S s, Part p) {
+             s.as<ids::Kinematics>(p).getTipJacobianDerivativeBatch(p.in(0), p.in(1),
+                                                                    p.matrices(0));
+           })
+      .add(kCoriolisMatrix,
+           [](S s, Part p) {
+             s.as<ids::CoriolisMatrix>(p).getCoriolisMatrixBatch(p.in(0), p.in(1), p.matrices(0));
+           })
+      .add<FloatOrFloats>(kKineticEnergy,
+                          [](S s, Part p) {
+                            s.as<ids::Energies>(p).getKineticEnergyBatch(p.in(0), p.in(1),
+                                                                         p.states(0));
+                          })
+      .add<FloatOrFloats>(
+          kPotentialEnergy,
+          [](S s, Part p) { s.as<ids::Energies>(p).getPotentialEnergyBatch(p.in(0), p.states(0)); })
+      .add(kTorqueDerivatives,
+           [](S s, Part p) {
+             s.as<ids::TorqueDerivatives>(p).getTorqueDerivativesBatch(
+                 p.in(0), p.in(1), p.in(2), p.matrices(0), p.matrices(1), p.matrices(2));
+           })
+      .add(kRegressor,
+           [](S s, Part p) {
+             s.as<ids::Regressor>(p).getRegressorBatch(p.in(0), p.in(1), p.in(2), p.matrices(0));
+           })
+      .add(kAccelerations,
+           [](S s, Part p) {
+             s.as<ids::ForwardDynamics>(p).getAccelerationsBatch(p.in(0), p.in(1), p.in(2),
+                                                                 p.states(0));
+           })
+      .addJacobian([](S s, Part p) {
+        s.as<ids::Kinematics>(p).getTipJacobianBatch(p.in(0), p.matrices(0));
+      });
+}
+
+/// What takes more than states.
+void bindCalls(py::class_<Solver>& solver) {
   const py::kw_only keywords;
   const py::arg_v frame = py::arg("frame") = "root", out = py::arg("out") = py::none();
+  const auto doc = [](const ResultText& text, const std::vector<std::string>& arguments) {
+    return documented(text, arguments, Solver::kExample);
+  };
   solver
       .def("torques", &torques, py::arg("q"), py::arg("qd"), py::arg("qdd"), keywords,
            py::arg("wrench") = py::none(), frame, out,
-           "tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q); with a wrench + J(q)^T wrench, as in\n"
-           "external_torques(); frame='tip' without a wrench is an error.")
+           doc({"Joint torques tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q); with a wrench\n"
+                "+ J(q)^T wrench, as in external_torques().",
+                "(n,) or (N, n)", "arm.torques(q, qd, qdd).shape\n(100, 6)"},
+               {"q", "qd", "qdd", "wrench", "frame", "out"})
+               .c_str())
+      .def("external_torques", &externalTorques, py::arg("q"), py::arg("wrench"), frame, keywords,
+           out,
+           doc({"J(q)^T wrench: what the joints add so that the tip exerts the wrench on its\n"
+                "surroundings.",
+                "(n,) or (N, n)", "arm.external_torques(q, [0, 0, -20, 0, 0, 0]).shape\n(100, 6)"},
+               {"q", "wrench", "frame", "out"})
+               .c_str())
       .def("friction_vector", &frictionVector, py::arg("qd"), keywords, py::arg("q") = py::none(),
            out,
-           "f(q, qd); zero if the solver has no friction model or was made without. q is needed\n"
-           "where friction_depends_on_position.")
+           doc({"Friction torques f(q, qd); zero if the solver has no friction model or was made\n"
+                "without. q is needed where friction_depends_on_position.",
+                "(n,) or (N, n)", "bool(arm.friction_vector(qd).any())\nFalse"},
+               {"qd", "q", "out"})
+               .c_str())
       .def("dynamic_components", &dynamicComponents, py::arg("q"), py::arg("qd"), keywords, out,
-           "H(q), C(q, qd) qd, g(q); out: a tuple of three arrays.");
-}
-
-// ---------------------------------------------------------------- capabilities
-
-void bindCapabilities(py::class_<Solver>& solver) {
-  using S = const Solver&;
-  using Part = const PartOfCall&;
-  Quantities<Solver>(solver)
-      .add(
-          "tip_pose", std::array{"q"}, std::array{kRotation, kVector3},
-          [](S s, Part p) {
-            s.as<ids::Kinematics>(p).getTipPoseBatch(p.in(0), p.matrices(0), p.states(1));
-          },
-          "Pose of the tip in the root frame: R, (3, 3) or (N, 3, 3), and p, (3,) or (N, 3).")
-      .add(
-          "tip_jacobian", std::array{"q"}, std::array{kJacobian},
-          [](S s, Part p) { s.as<ids::Kinematics>(p).getTipJacobianBatch(p.in(0), p.matrices(0)); },
-          "J(q), (6, n) or (N, 6, n): [v, w] = J qd is the velocity of the tip's origin, linear\n"
-          "first, in the axes of the root frame.")
-      .add(
-          "tip_jacobian_derivative", std::array{"q", "qd"}, std::array{kJacobian},
-          [](S s, Part p) {
-            s.as<ids::Kinematics>(p).getTipJacobianDerivativeBatch(p.in(0), p.in(1), p.matrices(0));
-          },
-          "dJ/dt where q moves with qd, in the shape of J.")
-      .add(
-          "coriolis_matrix", std::array{"q", "qd"}, std::array{kJointByJoint},
-          [](S s, Part p) {
-            s.as<ids::CoriolisMatrix>(p).getCoriolisMatrixBatch(p.in(0), p.in(1), p.matrices(0));
-          },
-          "C(q, qd) of Christoffel's symbols, (n, n) or (N, n, n).")
-      .add<FloatOrFloats>(
-          "kinetic_energy", std::array{"q", "qd"}, std::array{kScalar},
-          [](S s, Part p) {
-            s.as<ids::Energies>(p).getKineticEnergyBatch(p.in(0), p.in(1), p.states(0));
-          },
-          "1/2 qd^T H qd [J], a number or (N,); where H is symmetric.")
-      .add<FloatOrFloats>(
-          "potential_energy", std::array{"q"}, std::array{kScalar},
-          [](S s, Part p) { s.as<ids::Energies>(p).getPotentialEnergyBatch(p.in(0), p.states(0)); },
-          "Of gravity [J], a number or (N,); zero where all masses are at the root's origin.\n"
-          "Where H is symmetric.")
-      .add(
-          "torque_derivatives", std::array{"q", "qd", "qdd"},
-          std::array{kJointByJoint, kJointByJoint, kJointByJoint},
-          [](S s, Part p) {
-            s.as<ids::TorqueDerivatives>(p).getTorqueDerivativesBatch(
-                p.in(0), p.in(1), p.in(2), p.matrices(0), p.matrices(1), p.matrices(2));
-          },
-          "dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n) each, friction included.")
-      .add(
-          "regressor", std::array{"q", "qd", "qdd"}, std::array{kRegressor},
-          [](S s, Part p) {
-            s.as<ids::Regressor>(p).getRegressorBatch(p.in(0), p.in(1), p.in(2), p.matrices(0));
-          },
-          "Y, (n, 10 n) or (N, n, 10 n): torques of rigid bodies are Y p.")
-      .add(
-          "accelerations", std::array{"q", "qd", "tau"}, std::array{kPerJoint},
-          [](S s, Part p) {
-            s.as<ids::ForwardDynamics>(p).getAccelerationsBatch(p.in(0), p.in(1), p.in(2),
-                                                                p.states(0));
-          },
-          "qdd under these torques, friction subtracted.");
-  solver.def("external_torques", &externalTorques, py::arg("q"), py::arg("wrench"),
-             py::arg("frame") = "root", py::kw_only(), py::arg("out") = py::none(),
-             "J(q)^T wrench: what the joints add so that the tip exerts the wrench on its\n"
-             "surroundings. wrench: (6,) or (N, 6), force [N] and torque [N m] about the tip's\n"
-             "origin, in the axes of frame, 'root' or 'tip'.");
+           doc({"H(q), C(q, qd) qd and g(q), faster than by three calls; out: a tuple of three.",
+                "(n, n), (n,), (n,), or (N, n, n), (N, n), (N, n)",
+                "H, c, g = arm.dynamic_components(q, qd)\n"
+                "np.allclose(np.einsum(\"kij,kj->ki\", H, qdd) + c + g, arm.torques(q, qd, qdd))\n"
+                "True"},
+               {"q", "qd", "out"})
+               .c_str());
 }
 
 // ---------------------------------------------------------------- properties
@@ -435,14 +455,36 @@ void setBaseAcceleration(const Solver& solver, const ArrayLike& acceleration) {
 
 void bindChanges(py::class_<Solver>& solver) {
   solver
-      .def("set_payload", &setPayload, py::arg("name"), py::arg("mass"),
-           py::arg("center_of_mass") = py::none(), py::arg("inertia") = py::none(),
-           py::arg("frame") = py::none(),
-           "Adds a rigid body to the tip, or replaces the one of that name, also while other\n"
-           "threads compute. mass: kg. center_of_mass: (3,) m, in the body's frame. inertia:\n"
-           "(3, 3) or ixx ixy ixz iyy iyz izz, kg m^2, about the center of mass, in the axes of\n"
-           "the body's frame; none: a point mass. frame: (4, 4) pose of that frame in the tip\n"
-           "frame. A UserWarning for a body that is implausible: 5 m away, for one.")
+      .def(
+          "set_payload", &setPayload, py::arg("name"), py::arg("mass"),
+          py::arg("center_of_mass") = py::none(), py::arg("inertia") = py::none(),
+          py::arg("frame") = py::none(),
+          R"(Adds a rigid body to the tip, or replaces the one of that name, also while other threads compute.
+
+Parameters
+----------
+name : str
+mass : float
+    kg.
+center_of_mass : array_like, (3,), optional
+    m, in the body's frame; by default its origin.
+inertia : array_like, (3, 3) or ixx ixy ixz iyy iyz izz, optional
+    kg m^2, about the center of mass, in the axes of the body's frame; by default a point mass.
+frame : array_like, (4, 4), optional
+    Pose of the body's frame in the tip frame; by default the same.
+
+Warns
+-----
+UserWarning
+    A body that is implausible: 5 m away, for one.
+
+Examples
+--------
+>>> from inverse_dynamics import Solver
+>>> arm = Solver("ur10_real")
+>>> arm.set_payload("gripper", 1.5, center_of_mass=[0, 0, 0.06])
+>>> sorted(arm.payloads)
+['gripper'])")
       .def(
           "remove_payload",
           [](const Solver& s, const std::string& name) {
@@ -581,38 +623,68 @@ std::shared_ptr<const ids::InverseDynamicsSolver> solverOf(const py::handle& obj
 void bindSolver(py::module_& module) {
   module.def(
       "available_solvers", [] { return ids::SolverLoader().availableSolvers(); },
-      "Names of the installed solver plugins, sorted; none if no workspace is sourced.");
+      R"(Names of the installed solver plugins, sorted; none if no workspace is sourced.
 
-  py::class_<Solver> solver(
-      module, "Solver",
-      "An inverse dynamics solver, made by name and ready to compute.\n\n"
-      "Arrays are (n,), one state, or (N, n), one state per row; results have the\n"
-      "same shape. rad, rad/s, rad/s^2, N m (prismatic m, m/s, m/s^2, N); joints\n"
-      "in the order of joint_names. out: an array of doubles that takes the result.\n"
-      "Any layout, without copies. Threads: safe; the GIL is released. Pickled, it is\n"
-      "made again.");
+Returns
+-------
+list of str
+
+Examples
+--------
+>>> from inverse_dynamics import available_solvers
+>>> "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL" in available_solvers()
+True)");
+
+  py::class_<Solver> solver(module, "Solver",
+                            R"(An inverse dynamics solver, made by name and ready to compute.
+
+Arrays are (n,), one state, or (N, n), one state per row, joints in the order of joint_names; results have
+the same shape. Any layout, without copies. Threads: safe; the GIL is released. Pickled, it is made again.
+
+Parameters
+----------
+plugin : Robot, str or path, optional
+    A Robot, a name of robot_names() or the file of a run configuration; or a plugin: one of
+    available_solvers(), or its package without the ending, such as "kdl". By default rigid bodies.
+    What follows replaces what the robot states; what isn't given has the solver's default.
+urdf : str or path, optional
+    Text of the description, or path of a .urdf or .xacro file.
+root, tip : str, optional
+    Links between which the chain is; by default the first and the last.
+gravity : sequence of 3 floats, optional
+    m/s^2, in the axes of the root link.
+friction : bool, optional
+    Whether the solver adds its friction model.
+attached : {"lump", "ignore"}, optional
+    Whether links that are attached to the chain count.
+model : str, optional
+    File or name of a model.
+parameters : dict, optional
+    Others of the solver, by name; batch_threads: number of threads that may share a large batch.
+
+Raises
+------
+SolverError
+    See inverse_dynamics.errors.
+
+Examples
+--------
+>>> from inverse_dynamics import Solver, load_robot
+>>> arm = Solver("kdl", urdf=load_robot("ur10_simulated").urdf, gravity=[0, 0, -1.62])
+>>> arm
+<Solver kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL: 6 joints, shoulder_pan_joint to wrist_3_joint>
+>>> arm.torques([0.5] * 6, [0] * 6, [0] * 6).shape
+(6,))");
   solver
-      .def(
-          py::init(&makeSolver), py::arg("plugin") = "", py::arg("urdf") = "", py::arg("root") = "",
-          py::arg("tip") = "", py::arg("gravity") = py::none(), py::kw_only(),
-          py::arg("friction") = py::none(), py::arg("attached") = "", py::arg("model") = py::none(),
-          py::arg("parameters") = py::dict(),
-          "plugin: a Robot, a name of robot_names(), the file of a run configuration, or a\n"
-          "plugin: package/Class, one of available_solvers(), or its package without the ending,\n"
-          "such as kdl; none beside a description: rigid bodies. What follows replaces what the\n"
-          "robot states. urdf: its text, or the path of a .urdf or .xacro file. root, tip: links; "
-          "empty: the first and the last. gravity:\n"
-          "3 numbers, m/s^2, in the frame of the root link. friction: whether the solver adds its\n"
-          "friction model. attached: 'lump' or 'ignore' the links that are attached to the chain.\n"
-          "model: file or name of a model. parameters: other parameters of the solver, by name;\n"
-          "batch_threads: number of threads that may share a large batch. Arguments that are not\n"
-          "given have the solver's defaults.\n\n"
-          "Raises SolverError: see inverse_dynamics.errors.")
+      .def(py::init(&makeSolver), py::arg("plugin") = "", py::arg("urdf") = "",
+           py::arg("root") = "", py::arg("tip") = "", py::arg("gravity") = py::none(),
+           py::kw_only(), py::arg("friction") = py::none(), py::arg("attached") = "",
+           py::arg("model") = py::none(), py::arg("parameters") = py::dict())
       .def("__repr__", &represented)
       .def(py::pickle(&stateOf, &restored));
   bindProperties(solver);
   bindQuantities(solver);
-  bindCapabilities(solver);
+  bindCalls(solver);
   bindChanges(solver);
 }
 

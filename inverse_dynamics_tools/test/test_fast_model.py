@@ -25,38 +25,28 @@ def motion() -> tuple[np.ndarray, ...]:
 
 
 @pytest.mark.parametrize(
-    ("method", "solvers", "inputs"),
+    ("method", "inputs"),
     [
-        ("forward_dynamics", "accelerations", 3),
-        ("torque_derivatives", "torque_derivatives", 3),
-        ("coriolis_matrix", "coriolis_matrix", 2),
-        ("tip_pose", "tip_pose", 1),
-        ("tip_jacobian", "tip_jacobian", 1),
-        ("tip_jacobian_derivative", "tip_jacobian_derivative", 2),
+        ("torques", 3),
+        ("inertia_matrix", 1),
+        ("coriolis_vector", 2),
+        ("gravity_vector", 1),
+        ("accelerations", 3),
+        ("torque_derivatives", 3),
+        ("coriolis_matrix", 2),
+        ("tip_pose", 1),
+        ("jacobian", 1),
+        ("tip_jacobian_derivative", 2),
     ],
 )
-def test_results_are_those_of_the_solver(urdf, motion, method, solvers, inputs):
+def test_results_are_those_of_the_solver(urdf, motion, method, inputs):
     """Of many states and of one; test_solver_capabilities.py judges the solver."""
     model, solver = FastModel.from_urdf(urdf), Solver(RIGID_BODY, urdf=urdf)
     assert model.joint_names == solver.joint_names
     for states in (motion[:inputs], [values[3] for values in motion[:inputs]]):
-        results = (getattr(model, method)(*states), getattr(solver, solvers)(*states))
-        for ours, theirs in zip(
-            *(r if isinstance(r, tuple) else (r,) for r in results), strict=True
-        ):
-            np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9)
-
-
-@pytest.mark.parametrize("method", ["forward_dynamics", "tip_jacobian"])
-def test_results_go_into_the_callers_arrays(urdf, motion, method):
-    model = FastModel.from_urdf(urdf)
-    call, states = getattr(model, method), motion if method == "forward_dynamics" else motion[:1]
-    expected = call(*states)
-    out = np.zeros((*expected.shape[:-1], 12))[..., ::2]
-    assert call(*states, out=out) is out
-    np.testing.assert_array_equal(out, expected)
-    with pytest.raises(UserError, match=f"{method}: argument out: wrong shape"):
-        call(*states, out=out[:-1])
+        ours, theirs = (getattr(each, method)(*states) for each in (model, solver))
+        for our, their in zip(ours, theirs, strict=True):
+            np.testing.assert_allclose(our, their, rtol=0, atol=1e-9)
 
 
 def test_regressor_times_parameters_are_the_torques(
@@ -73,7 +63,7 @@ def test_threads_give_the_same_bits(urdf: str) -> None:
     motion = np.random.default_rng(3).uniform(-2, 2, size=(3, 10_000, 6))
     one, three = FastModel.from_urdf(urdf), FastModel.from_urdf(urdf, threads=3)
     assert (one.regressor(*motion) == three.regressor(*motion)).all()
-    assert (one.forward_dynamics(*motion) == three.forward_dynamics(*motion)).all()
+    assert (one.accelerations(*motion) == three.accelerations(*motion)).all()
 
 
 def test_errors_name_what_was_expected(urdf: str) -> None:

@@ -47,7 +47,7 @@ def expect_equal(ours: Any, theirs: Any, tolerance: float = ROUNDING) -> None:
 # Arguments of each method, of the fields of a Motion (accelerations take the third as torques).
 METHODS = {
     "tip_pose": "q",
-    "tip_jacobian": "q",
+    "jacobian": "q",
     "tip_jacobian_derivative": "q qd",
     "external_torques": "q wrench",
     "coriolis_matrix": "q qd",
@@ -59,7 +59,7 @@ METHODS = {
 }
 OF_KDL = (
     "tip_pose",
-    "tip_jacobian",
+    "jacobian",
     "tip_jacobian_derivative",
     "external_torques",
     "accelerations",
@@ -121,12 +121,12 @@ def test_identified_models_have_all_but_what_needs_a_physical_inertia(plugin: st
     dtau_dq, dtau_dqd, H = solver.torque_derivatives(*states[:3])
     assert dtau_dq.shape == dtau_dqd.shape == (N, *H.shape[1:])
     expect_equal(H, solver.inertia_matrix(states.q))
-    J = solver.tip_jacobian(states.q)
+    J = solver.jacobian(states.q)
     expect_equal(
         solver.torques(*states[:3], wrench=states.wrench),
         solver.torques(*states[:3]) + np.einsum("kij,ki->kj", J, states.wrench),
     )
-    with pytest.raises(errors.SolverError, match="isn't that of rigid bodies"):
+    with pytest.raises(errors.SolverError, match="^accelerations: .*isn't that of rigid bodies"):
         call(solver, "accelerations", states)
 
 
@@ -158,7 +158,7 @@ def test_identified_models_have_energies_where_their_inertia_is_symmetric() -> N
     ur10 = Solver(UR10)
     assert asymmetries(ur10) == pytest.approx((0.8, 0.7), abs=0.1)  # kg m^2, N m/rad
     for method in ("kinetic_energy", "potential_energy"):
-        with pytest.raises(errors.SolverError, match="no energies: expected a symmetric inertia"):
+        with pytest.raises(errors.SolverError, match=f"^{method}: no energies: expected a sym"):
             call(ur10, method, motion(ur10))
 
 
@@ -287,7 +287,8 @@ def test_friction_that_depends_on_load_needs_a_position_and_counts_a_payload(
     solver = Solver(RIGID_BODY, model=str(file))
     assert solver.friction_depends_on_position
     assert not Solver(UR10).friction_depends_on_position
-    with pytest.raises(errors.SizeMismatchError, match=r"missing.*friction_vector\(qd, q=q\)"):
+    remedy = r"^friction_vector: argument q: missing.*; call friction_vector\(qd, q=q\)"
+    with pytest.raises(errors.SizeMismatchError, match=remedy):
         solver.friction_vector([1.0])
     assert solver.friction_vector([1.0], q=[0.0]) == pytest.approx(3 + 0.5 * 2 * 9.81)
     solver.set_payload("part", 5.0)

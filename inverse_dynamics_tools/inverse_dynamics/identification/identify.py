@@ -91,6 +91,14 @@ def identify(
     start, end.
 
     Raises UserError: those of evaluate(), IdentificationError.
+
+    Examples
+    --------
+    >>> from inverse_dynamics import identify
+    >>> from inverse_dynamics.results.demo import stored_recording
+    >>> found = identify([stored_recording("ur10_simulated")], "ur10_simulated")
+    >>> found.solver().joint_names[0]
+    'shoulder_pan_joint'
     """
     begin = time.perf_counter()
     if not isinstance(robot, Robot):

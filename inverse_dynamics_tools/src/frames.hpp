@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Jacobians of the links and joints of a robot description, not of the chain's tip alone.
+///
+///     const Frames frames(urdf, {"base_link", {"shoulder", "elbow"}, {{"finger", 0.02}}});
+///     frames.to("forearm").jacobians(q, J);
+#pragma once
+
+#include <Eigen/Core>
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/states.hpp>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace inverse_dynamics_tools {
+
+/// Whose frames: a chain of a description.
+struct FramesOf {
+  std::string root;                      ///< empty: that of the description
+  std::vector<std::string> joints;       ///< from root to tip
+  std::map<std::string, double> locked;  ///< positions of joints beside the chain; others: 0
+};
+
+/// Threads: safe.
+class Frames {
+ public:
+  /// The chain from the root to a frame: joints of ours, then others, which are held.
+  struct Path {
+    std::unique_ptr<const chain_dynamics::Chain> chain;  // null: nothing moves
+    Eigen::Index shared = 0;
+    Eigen::VectorXd q;
+
+    /// `J(q)` of each state, 6 x n: the velocity of the frame's origin, linear first, in the axes
+    /// of the root frame.
+    void jacobians(const chain_dynamics::ConstStates& states,
+                   const chain_dynamics::StridedMatrices& J) const;
+  };
+
+  /// @param urdf  empty: there are no frames.
+  Frames(std::string urdf, FramesOf of) : urdf_(std::move(urdf)), of_(std::move(of)) {}
+
+  /// A joint's frame is that of its child link.
+  ///
+  /// @throws InvalidParameterValueException  no description, no such link or joint.
+  const Path& to(const std::string& frame) const;
+
+ private:
+  Path pathTo(const std::string& frame) const;
+
+  const std::string urdf_;
+  const FramesOf of_;
+  mutable std::mutex busy_;
+  mutable std::map<std::string, Path> paths_;
+};
+
+}  // namespace inverse_dynamics_tools

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What help() and inspect.signature() show of the public names; examples of docstrings are run."""
+
+import doctest
+import inspect
+
+import numpy as np
+import pytest
+
+import inverse_dynamics
+from inverse_dynamics import _core
+
+PUBLIC = {name: getattr(inverse_dynamics, name) for name in inverse_dynamics.__all__}
+BOUND = {n: v for n, v in PUBLIC.items() if v.__module__ == _core.__name__ and n != "JointError"}
+EXAMPLES = [
+    example
+    for name, value in PUBLIC.items()
+    for example in doctest.DocTestFinder().find(value, name, module=False)
+    if example.examples
+]
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
+def test_examples_give_what_they_show(example, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shown = []
+    doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(example, out=shown.append)
+    assert not shown, "".join(shown)
+
+
+def methods(owner):
+    return [(n, m) for n, m in vars(owner).items() if inspect.isroutine(m) and n[0] != "_"]
+
+
+def test_computing_methods_have_sections_and_examples():
+    shown = {example.name for example in EXAMPLES}
+    for name in ("Solver", "FastModel"):
+        for method, function in methods(PUBLIC[name]):
+            if "q" in inspect.signature(getattr(PUBLIC[name], method)).parameters:
+                assert f"{name}.{method}" in shown
+                for section in ("Parameters", "Returns", "Examples"):
+                    assert f"\n{section}\n{'-' * len(section)}\n" in function.__doc__
+    assert {
+        "Solver",
+        "FastModel",
+        "Robot",
+        "Evaluation",
+        "available_solvers",
+        "load_robot",
+    } <= shown
+    assert {"robot_names", "evaluate", "identify"} <= shown
+
+
+def test_bound_functions_have_signatures_with_types():
+    signature = inspect.signature(inverse_dynamics.Solver.torques)
+    assert list(signature.parameters) == ["self", "q", "qd", "qdd", "wrench", "frame", "out"]
+    assert signature.parameters["q"].annotation == "numpy.typing.ArrayLike"
+    assert signature.parameters["frame"].default == "root"
+    assert signature.parameters["out"].kind is inspect.Parameter.KEYWORD_ONLY
+    assert "NDArray" in signature.return_annotation
+    assert list(inspect.signature(inverse_dynamics.Solver).parameters)[:2] == ["plugin", "urdf"]
+    solver = inverse_dynamics.Solver("ur10_real")
+    assert list(inspect.signature(solver.jacobian).parameters) == ["q", "frame", "out"]
+    for owner in (value for value in BOUND.values() if inspect.isclass(value)):
+        for name, _ in methods(owner):
+            assert inspect.signature(getattr(owner, name)).parameters is not None
+            assert "(" not in (getattr(owner, name).__doc__ or "-").split()[0]
+
+
+def test_public_names_are_shown():
+    assert dir(inverse_dynamics) == sorted([*PUBLIC, "__version__"])
+
+
+def test_a_method_of_a_class_is_called_with_an_object():
+    solver = inverse_dynamics.Solver("ur10_real")
+    q = np.zeros(6)
+    np.testing.assert_array_equal(
+        inverse_dynamics.Solver.gravity_vector(solver, q), solver.gravity_vector(q)
+    )
