@@ -115,7 +115,7 @@ py::array SolverCall::numbersFrom(const char* name, const py::object& values) co
 void SolverCall::input(const char* name, const py::object& values) {
   py::array array = numbersFrom(name, values);
   requireShape(name, array);
-  array = Doubles::ensure(array);
+  array = Doubles(array);
 
   if (inputs_.empty()) {
     shape_ = shapeOf(array);
@@ -134,7 +134,7 @@ void SolverCall::wrench(const char* name, const py::object& values) {
                            : "(6,) or " + shapeText(perState({6})) + ", force and torque",
         shapeText(shape)));
   }
-  inputs_.push_back({name, Doubles::ensure(array)});
+  inputs_.push_back({name, Doubles(array)});
 }
 
 // ---------------------------------------------------------------- results

@@ -81,7 +81,7 @@ def test_frames_move_as_their_poses(arm):
         expect(J, np.concatenate([(p_up - p_down).T / (2 * step), w]), DIFFERENCES)
 
 
-@pytest.mark.parametrize("arm", ARMS)
+@pytest.mark.parametrize("arm", ["ur10", "panda"])  # without bodies on joints beside the chain
 def test_gravity_torques_are_the_weights_through_the_jacobians(arm):
     solver = solver_of(arm)
     (q,) = states(solver, 1)

@@ -96,7 +96,8 @@ def identify(
     --------
     >>> from inverse_dynamics import identify
     >>> from inverse_dynamics.results.demo import stored_recording
-    >>> found = identify([stored_recording("ur10_simulated")], "ur10_simulated")
+    >>> recordings = [stored_recording("ur10_simulated")]
+    >>> found = identify(recordings, "ur10_simulated", accept=["gain"])  # nothing to gain
     >>> found.solver().joint_names[0]
     'shoulder_pan_joint'
     """
