@@ -94,12 +94,13 @@ def identify(
 
     Examples
     --------
-    >>> from inverse_dynamics import identify
+    >>> from inverse_dynamics import UserError, identify
     >>> from inverse_dynamics.results.demo import stored_recording
-    >>> recordings = [stored_recording("ur10_simulated")]
-    >>> found = identify(recordings, "ur10_simulated", accept=["gain"])  # nothing to gain
-    >>> found.solver().joint_names[0]
-    'shoulder_pan_joint'
+    >>> try:  # a simulated arm is its description: nothing to gain
+    ...     found = identify([stored_recording("ur10_simulated")], "ur10_simulated")
+    ... except UserError as error:
+    ...     print("no gain over the present model" in str(error))
+    True
     """
     begin = time.perf_counter()
     if not isinstance(robot, Robot):
