@@ -69,8 +69,8 @@ def run(evaluation):
 def page(run, comparison, tmp_path_factory):
     """The page as a file: two runs and a comparison."""
     file = tmp_path_factory.mktemp("page") / "report.html"
-    runs = [run, _with_others(replace(run, title="second"))]
-    file.write_text(render_page("A page", runs, [report_comparison(comparison)], ["A note."]))
+    runs = [run, _with_others(replace(run, title="second")), report_comparison(comparison)]
+    file.write_text(render_page("A page", runs, ["A note."]))
     return file
 
 
@@ -120,6 +120,7 @@ def test_series_come_through_in_single_precision(page, evaluation):
         }
         for name, values in series.items():
             assert "time" not in joint[name]
+            assert ("limit" in joint[name]) == (name == "error")
             np.testing.assert_array_equal(floats(joint[name]["values"]), values.astype("f4"))
 
 
@@ -151,7 +152,7 @@ def test_names_are_text_and_never_markup(evaluation, comparison):
     robot = replace(evaluation.robot, description=evil, source=evil)
     bad = replace(evaluation, errors=errors, robot=robot, notes=(evil,), joint_names=(evil,) * 6)
     bad_comparison = replace(comparison, labels=(evil, evil + "2"), evaluations=(bad, bad))
-    html = render_page(evil, [report_run(bad, evil)], [report_comparison(bad_comparison)], [evil])
+    html = render_page(evil, [report_run(bad, evil), report_comparison(bad_comparison)], [evil])
     assert "<script>alert" not in html
     assert html.count("</script") == 2
     assert data_of(html)[0]["joints"][0]["name"] == evil
@@ -192,16 +193,31 @@ def test_tables_and_trajectories_are_shown_as_recordings_are(tmp_path):
         assert floats(joint["computed"]["values"]) == expected
 
 
-def test_comparison_is_a_table_and_a_figure(page, comparison):
-    section = re.search(r'<section class="comparison".*?</section>', page.read_text(), re.DOTALL)[0]
-    assert "as it is" in section
-    assert "one N m off" in section
-    cells = re.findall(r"<(?:td|th scope=\"row\")>([^<]*)</t[dh]>", section.replace("<wbr>", ""))
-    row = cells[cells.index("elbow_joint") :][:4]
+def test_a_comparison_is_one_run_with_the_others_to_choose_and_a_table(page, comparison):
+    html = page.read_text()
+    run = data_of(html)[2]
+    assert (run["name"], run["others_shown"]) == ("as it is", True)
+    other = run["joints"][1]["others"][0]
+    assert other["name"] == "one N m off"
+    np.testing.assert_allclose(
+        floats(other["error"]["values"]), floats(run["joints"][1]["error"]["values"]) + 1, atol=1e-4
+    )
+    table = html[html.index("RMSE of as it is and one N m off") :].replace("<wbr>", "")
+    row = re.findall(r">([^<>]*)</t[dh]>", table[table.index(">elbow_joint<") :])[:4]
     assert [float(c) for c in row[1:3]] == pytest.approx(comparison.rmse[:, 2], rel=0.01)
     assert row[3] == "N m"
-    assert "mean" in cells
-    assert "<svg" in section
+
+
+def test_a_start_transient_does_not_flatten_the_plot_of_errors(run):
+    """Nor does a spike; what was left out doesn't count."""
+    t = run.time
+    smooth = 0.5 * np.sin(3 * t)[:, None] * np.ones(6)
+    wild = smooth + 90.0 * (t < t[0] + 0.5)[:, None]
+    wild[700] = 200.0
+    shown = replace(run, computed=wild, measured=0 * wild, left_out=[(t[0], t[0] + 0.5)])
+    error = data_of(render_page("A page", [shown]))[0]["joints"][2]["error"]
+    assert 0.5 <= error["limit"] < 0.8
+    assert floats(error["values"]).max() == 200.0
 
 
 def test_report_verb_writes_the_page(evaluation, tmp_path, capsys, monkeypatch):
@@ -215,7 +231,7 @@ def test_report_verb_writes_the_page(evaluation, tmp_path, capsys, monkeypatch):
 
 
 def test_bands_and_other_models_are_in_the_data(page, evaluation):
-    first, second = data_of(page.read_text())
+    first, second, _ = data_of(page.read_text())
     assert first["joints"][0]["others"] == []
     assert first["joints"][0]["band"] == []
     joint = second["joints"][1]
@@ -238,7 +254,7 @@ def test_a_summary_comes_before_the_runs(run):
         "<td>\u2013</td>",
         "<dd>step</dd>",
         "<li>Found</li>",
-        "1.00e-09",
+        "1.00·10⁻⁹",
     ):
         assert text in html
     assert "<summary>More &lt;of it&gt;</summary>" in html
@@ -346,14 +362,41 @@ def test_browser_shows_robot_and_plots_without_complaints(opened, section):
     assert complaints(opened) == []
 
 
-def test_a_spike_does_not_flatten_the_plot_of_errors(opened):
-    values = [((-1) ** i) * 0.5 for i in range(1000)]
-    ask = "return range([{style: arguments[0], values: arguments[1]}]);"
-    _, usual = opened.execute_script(ask, "error", values)
-    _, spiked = opened.execute_script(ask, "error", [200.0, *values])
-    assert usual <= spiked < 2.0 * usual
-    # but a torque's peak is shown
-    assert opened.execute_script(ask, "measured", [200.0, *values])[1] > 200.0
+@pytest.mark.parametrize("pointer", ["mouse", "touch"])
+def test_values_are_read_at_the_place_that_is_pointed_at(opened, section, pointer):
+    """In every plot; a finger moves the robot there too."""
+    read = """
+        const seen = [], write = CanvasRenderingContext2D.prototype.fillText;
+        CanvasRenderingContext2D.prototype.fillText = function(text) { seen.push(text); };
+        const plot = arguments[0].querySelector(".plot-overlay"), {width} = plot.getBoundingClientRect();
+        const at = {pointerType: arguments[1], bubbles: true};
+        const event = new PointerEvent("pointermove", at);
+        Object.defineProperty(event, "offsetX", {value: 54 + 0.5 * (width - 64)});
+        plot.dispatchEvent(event);
+        CanvasRenderingContext2D.prototype.fillText = write;
+        plot.dispatchEvent(new PointerEvent("pointerleave", at));
+        return seen;
+    """
+    seen = opened.execute_script(read, section, pointer)
+    assert float(seen[0].removesuffix(" s")) == pytest.approx(3.0, abs=0.02)
+    assert len(seen) == 6 * (3 + 2)  # time, two torques; time, error
+    assert float(seen[3 + 1]) == pytest.approx(float(seen[1]) - float(seen[2]), abs=2e-3)
+    assert time_of(section) == pytest.approx(3.0 if pointer == "touch" else 0.0, abs=0.02)
+
+
+def test_a_plot_says_that_it_is_cut(opened):
+    """An axis of errors has a limit; one of torques shows each peak."""
+    ask = """
+        const plot = {options: {band: []}, shown: () => [{limit: arguments[0], values: [-200, 0.5]}]};
+        Plot.prototype.setRange.call(plot);
+        return [...plot.range, plot.cut];
+    """
+    low, high, cut = opened.execute_script(ask, 0.5)
+    assert -low == high == pytest.approx(0.56)
+    assert cut == ", cut: peak 200.000"
+    low, high, cut = opened.execute_script(ask, None)
+    assert low < -200
+    assert cut == ""
 
 
 @pytest.mark.parametrize("how", ["click", "space key"])

@@ -17,11 +17,11 @@ from inverse_dynamics.figures.scene import scene_of
 from inverse_dynamics.report.page import (
     Band,
     Figure,
-    ReportComparison,
     ReportRun,
     ReportSummary,
     ReportTable,
     aligned,
+    joint_table,
     render_page,
 )
 from inverse_dynamics.report.recordings import render_recordings_page
@@ -89,22 +89,11 @@ def pages(tmp_path_factory):
         run,
         cause="the elbow is reversed",
         notes=("the first 300 samples are a start transient",),
-        other_table=run.table,
-        other_table_title="The same without the 300 samples that are left out (shaded)",
+        tables=[joint_table("The same without the 300 samples that are left out", run.table)],
+        contacts=[(2.0, 2.5)],
         figures=[Figure(WIDE, "What it shows.")],
     )
     names = [row.joint for row in run.table]
-    errors = ReportTable(
-        "Root mean square error",
-        ("joint", "rigid bodies", "identified", "unit"),
-        [(name, 1.5, 0.12, "N m") for name in names],
-    )
-    comparison = ReportComparison(
-        "What identification brings",
-        "The same recording.",
-        errors,
-        Figure(WIDE, "Left and right."),
-    )
     headings = (
         "joint",
         "unit",
@@ -126,7 +115,7 @@ def pages(tmp_path_factory):
     ]
     texts = {
         "evaluation": render_page("An arm of a long name: measured and computed torques", [run]),
-        "comparison": render_page("Two runs", [run, bare], [comparison], ["A note."]),
+        "comparison": render_page("Two runs", [run, bare], ["A note."]),
         "identification": render_page("ur10_real: identified model", [run], summary=found),
         "recordings": render_recordings_page("A week", summaries, {"fourth": "gone"}, {}),
     }
@@ -174,26 +163,6 @@ def turn(request, driver, pages):
 # ---- lines -----------------------------------------------------------------------------------------------------------
 
 
-def test_a_column_of_pixels_is_drawn_in_the_order_of_time(show):
-    """A falling slope with 100 samples per pixel is a falling line, not a zigzag."""
-    points = show("evaluation").execute_script(
-        """
-        const count = 10000, time = Array.from({length: count}, (_, i) => i / count);
-        const values = time.map((t, i) => -t + (i % 7 === 3 ? 0.004 : 0)), points = [];
-        const plot = {x: (t) => 100 * t, y: (value) => value};
-        Plot.prototype.traceColumns.call(
-            plot, {lineTo: (x, y) => points.push([x, y])}, {time, values}, 0, count - 1, {});
-        return points;
-        """
-    )
-    x, y = np.transpose(points)
-    assert (np.diff(x) >= 0).all()
-    assert len(x) <= 4 * 101
-    assert np.diff(y).max() < 0.005  # never back up by a column's fall, 0.01
-    assert y.max() == pytest.approx(0.004, abs=0.001)  # but every peak is there
-    assert y.min() == pytest.approx(-1.0, abs=0.001)
-
-
 def test_every_curve_is_visible_at_1_khz(show):
     driver = show("evaluation")
     count = """
@@ -231,8 +200,7 @@ def test_numbers_of_a_column_are_written_alike():
         "text",
     ]
     assert aligned([0.9999, -2.0]) == ["1.00", "-2.00"]
-    assert aligned([2.26, 5.25e-6]) == ["2.26" + 6 * "\u2007", "0.00000525"]
-    assert aligned([5.0, 1.2e-7]) == ["5.00e+00", "1.20e-07"]  # never a mixture
+    assert aligned([2.26, 5.25e-6, -0.000999]) == ["2.26", "5.25·10⁻⁶", "-9.99·10⁻⁴"]
 
 
 def test_no_escapes_stand_in_the_tables(pages):
@@ -400,10 +368,7 @@ def test_a_screen_reader_finds_names_for_everything(turn):
 
 def test_names_of_solvers_are_short_and_the_cause_of_an_error_stands_above_the_plots(pages):
     text = (pages / "comparison.html").read_text(encoding="utf-8")
-    assert (
-        '<td title="rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody">rigid_body</td>'
-        in text
-    )
+    assert "<td>rigid_body</td>" in text
     section = text[text.index('id="run-1"') :]
     assert section.index("Likely cause of the error:</b> the elbow is reversed") < section.index(
         "<canvas"

@@ -15,12 +15,9 @@ BEFORE = "#E69F00"  # an error that a change has removed
 CUTOFF = "#009E73"
 CONTACT = "#E69F00"
 QUIET = "#009E73"
-LEFT_OUT = "#8C959F"  # behind samples that the second metrics leave out, at LEFT_OUT_ALPHA
-LEFT_OUT_ALPHA = 0.28
-RUNS = (COMPUTED, "#332288", "#56B4E9", "#882255", "#7A4A12")
-"""Of what several runs compute: never that of measured torques or of a single error."""
-OTHERS = ("#332288", "#882255", "#7A4A12")
-"""Of other models on the page of one run."""
+LEFT_OUT = "#F3EBD9"  # behind samples that the second metrics leave out: no grid line looks like it
+RUNS = (COMPUTED, "#332288", "#882255", "#7A4A12", "#56B4E9")
+"""Of what several runs, or models of one run, compute: never that of measured torques or of a single error."""
 
 INK = "#1B1F24"
 MUTED = "#555555"
@@ -42,7 +39,8 @@ LIGHT = {
     "computed": COMPUTED,
     "error": ERROR,
     "cursor": "#007A59",
-    **{f"other{k}": color for k, color in enumerate(OTHERS)},
+    "contact": CONTACT,
+    "left-out": LEFT_OUT,
     **{f"run{k}": color for k, color in enumerate(RUNS)},
 }
 """Of a page, by CSS variable."""
@@ -62,12 +60,11 @@ DARK = {
     "computed": "#E8701A",
     "error": "#4AA3DF",
     "cursor": "#2BC79A",
-    "other0": "#E8D9A0",
-    "other1": "#9FF0D0",
-    "other2": "#B07A3A",
+    "left-out": "#2B2718",
     "run0": "#E8701A",
-    "run1": "#5C7CFA",
-    "run3": "#9FF0D0",
-    "run4": "#E8D9A0",
+    "run1": "#E8D9A0",
+    "run2": "#9FF0D0",
+    "run3": "#B07A3A",
+    "run4": "#5C7CFA",
 }
 """The same where the reader prefers dark pages: computed and error of the same hue, lighter."""

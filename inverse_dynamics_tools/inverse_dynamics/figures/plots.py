@@ -29,12 +29,7 @@ if TYPE_CHECKING:
 MEASURED: dict[str, Any] = {"color": palette.MEASURED, "linewidth": 1.5}
 COMPUTED: dict[str, Any] = {"color": palette.COMPUTED, "linewidth": 0.9}
 ERROR: dict[str, Any] = {"color": palette.ERROR, "linewidth": 0.7}
-LEFT_OUT: dict[str, Any] = {
-    "color": palette.LEFT_OUT,
-    "alpha": palette.LEFT_OUT_ALPHA,
-    "linewidth": 0,
-    "zorder": 0.5,
-}
+LEFT_OUT: dict[str, Any] = {"color": palette.LEFT_OUT, "linewidth": 0, "zorder": 0.5}
 _MUTED = palette.MUTED
 
 FORMATS = ("png", "svg", "pdf")
@@ -132,8 +127,8 @@ def torque_figure(evaluation: Evaluation) -> Figure:
         error = evaluation.errors[j]
         share = "" if np.isnan(error.nrmse) else f", {100 * error.nrmse:.2g} % of measured range"
         _draw_errors(right, runs, j, f"RMSE {error.rmse:.3g} {error.unit}{share}")
-        shade(left, left_out, 0.001, LEFT_OUT, label="samples left out")
-        shade(right, left_out, 0.001, LEFT_OUT)
+        shade(left, left_out, 0.004, LEFT_OUT, label="samples left out")
+        shade(right, left_out, 0.004, LEFT_OUT)
     _label_time(axes, evaluation)
     robot = evaluation.robot
     friction = "" if robot.friction else ", friction left out"
@@ -263,16 +258,18 @@ def _draw_errors(axes: Axes, runs: Sequence[_Run], j: int, text: str) -> None:
     from matplotlib.ticker import EngFormatter
 
     axes.axhline(0, color="#999999", linewidth=0.6)
-    largest = 0.0
+    largest = peak = 0.0
     for run in runs:
         difference = run.evaluation.computed[:, j] - run.evaluation.measured[:, j]
-        largest = max(largest, error_limit(difference))
+        largest = max(largest, 1.1 * error_limit(difference[run.evaluation.samples.kept]))
+        peak = max(peak, np.abs(difference).max())
         time, drawn = line(run.evaluation.time, difference)
         if len(runs) == 1:
             axes.fill_between(time, 0, drawn, color=ERROR["color"], alpha=0.15, linewidth=0)
         axes.plot(time, drawn, **run.error_style)
     largest = largest or 1.0
-    axes.set_ylim(-1.1 * largest, 1.1 * largest)
+    axes.set_ylim(-largest, largest)
     if largest < 0.01:
         axes.yaxis.set_major_formatter(EngFormatter(sep=""))  # 200µ instead of 0.0002
-    axes.set_title(text, loc="left", fontsize=9, pad=3, color=_MUTED)
+    cut = f", cut: peak {peak:.3g}" if peak > largest else ""
+    axes.set_title(f"{text}{cut}", loc="left", fontsize=9, pad=3, color=_MUTED)

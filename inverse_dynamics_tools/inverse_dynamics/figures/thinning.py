@@ -26,12 +26,14 @@ def line(time: Floats, values: Floats) -> tuple[Floats, Floats]:
 
 
 def error_limit(error: Floats) -> float:
-    """Limit of an axis of errors (N,): their greatest size, but for spikes that would flatten the rest.
+    """Limit of an axis of errors (N,) of valid samples: their greatest size, but for spikes that would flatten them.
 
-    A spike is beyond one and a half times the 99.5 % quantile of the magnitudes, of which 32,768 to
-    65,536 are looked at in longer recordings.
+    A spike is beyond one and a half times the 99 % quantile of the magnitudes, of which 32,768 to
+    65,536 are looked at in longer recordings. Without samples: 0.
     """
-    quantile = np.quantile(np.abs(error[:: -(-len(error) // _MOST_MAGNITUDES)]), 0.995)
+    if not len(error):
+        return 0.0
+    quantile = np.quantile(np.abs(error[:: -(-len(error) // _MOST_MAGNITUDES)]), 0.99)
     return float(min(max(error.max(), -error.min()), 1.5 * quantile or np.inf))
 
 

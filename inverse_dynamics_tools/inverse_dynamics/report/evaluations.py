@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.base.extras import is_installed
 from inverse_dynamics.evaluation.evaluation import CAUSE
 from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.plots import comparison_figure, svg_of
 from inverse_dynamics.figures.scene import Scene, read_scene
-from inverse_dynamics.report.figures import error_figure, not_drawn
-from inverse_dynamics.report.page import Figure, ReportComparison, ReportRun, ReportTable
+from inverse_dynamics.report.figures import error_figure
+from inverse_dynamics.report.page import Figure, ReportRun, ReportTable, joint_table
 
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation.comparison import Comparison
@@ -23,7 +22,7 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
     """An evaluation for the page; `title` replaces the robot's name."""
     robot, log = evaluation.robot, evaluation.log
     scene = Scene() if robot.urdf is None else read_scene(robot.urdf, evaluation.joint_names)
-    left_out = evaluation.samples.left_out
+    left_out, kept = evaluation.samples.left_out, evaluation.errors_of_kept
     causes = [note for note in evaluation.notes if note.startswith(CAUSE)]
     return ReportRun(
         title=title or robot.name,
@@ -34,8 +33,9 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
         measured=evaluation.measured,
         computed=evaluation.computed,
         table=evaluation.errors,
-        other_table=evaluation.errors_of_kept if left_out else (),
-        other_table_title=f"The same without {left_out} invalid samples (shaded)",
+        tables=[joint_table(f"The same without {left_out} invalid samples (shaded)", kept)]
+        if left_out
+        else [],
         assumptions=_assumptions(evaluation),
         cause=causes[-1].removeprefix(CAUSE) if causes else "",
         notes=list(evaluation.notes_without_causes),
@@ -57,23 +57,19 @@ def _caption(evaluation: Evaluation) -> str:
     return f"{text}."
 
 
-def report_comparison(
-    comparison: Comparison, title: str = "", description: str = ""
-) -> ReportComparison:
-    """A comparison for the page; empty texts: the recording's name and the labels."""
-    first = comparison.evaluations[0]
-    svg = not_drawn()
-    if is_installed("matplotlib"):
-        svg = svg_of(lambda: comparison_figure(comparison))
-    return ReportComparison(
-        title=title or " against ".join(comparison.labels),
-        description=description or f"The same recording, {first.bag.name}, computed in more ways.",
-        table=_rmse_table(comparison),
-        figure=Figure(
-            _inline(svg),
-            "Left: measured torque (wide, grey) and what each run computes. Right: computed - measured.",
-        ),
-    )
+def report_comparison(comparison: Comparison, title: str = "", *, shown: bool = True) -> ReportRun:
+    """The first evaluation, with the torques of the others to choose; shown: they are at first."""
+    first, *others = comparison.evaluations
+    name, *labels = comparison.labels
+    run = report_run(first, title or first.bag.name)
+    return replace(
+        run,
+        name=name,
+        others={label: e.computed for label, e in zip(labels, others, strict=True)},
+        others_shown=shown,
+        tables=[_rmse_table(comparison), *run.tables],
+        assumptions=[*run.assumptions, *((label, e.robot.plugin) for label, e in zip(labels, others, strict=True))],
+    )  # fmt: skip
 
 
 def _rmse_table(comparison: Comparison) -> ReportTable:
@@ -86,7 +82,7 @@ def _rmse_table(comparison: Comparison) -> ReportTable:
     if total:
         rows.append(("mean", *rmse.mean(axis=1).tolist(), units[0]))
     headings = ("joint", *comparison.labels, "unit")
-    return ReportTable("Root mean square error", headings, rows, total=total)
+    return ReportTable(f"RMSE of {' and '.join(comparison.labels)}", headings, rows, total=total)
 
 
 def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
@@ -122,7 +118,6 @@ _THEMED = {  # colours of figures, by variable of the page
     palette.GRID: "grid",
     palette.COMPUTED: "computed",
     palette.ERROR: "error",
-    **{color: f"run{k}" for k, color in enumerate(palette.RUNS) if k > 0},
 }
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from inverse_dynamics.base.wording import counted
 from inverse_dynamics.evaluation.evaluation import joint_errors
 from inverse_dynamics.figures.scene import Scene, read_scene
+from inverse_dynamics.identification.knowledge import PARAMETERS, UNITS
 from inverse_dynamics.identification.summary import TITLES, choices_told, headings, held_out_rows
 from inverse_dynamics.report.page import (
     Band,
@@ -60,6 +61,7 @@ def _run(found: Identification, recording: str, several: bool) -> ReportRun:
         q=np.concatenate([block.q for block in blocks]),
         measured=measured,
         computed=identified,
+        name="identified",
         table=joint_errors(found.joints, found.units, identified, measured),
         assumptions=_block_facts(blocks),
         links=scene.links,
@@ -108,11 +110,15 @@ def error_table(
     )
 
 
+_FRICTION_UNITS = {"fv": "N m s/rad", "fl": "1", "vs": "rad/s", "shift": "rad/s", "width": "rad/s"}
+
+
 def _friction(found: Identification) -> ReportTable:
     keys = dict.fromkeys(key for law in found.model.friction for key in law if key != "law")
+    units = (f"{key} [{_FRICTION_UNITS.get(key, 'N m')}]" for key in keys)
     return ReportTable(
         title="Friction, rotor inertia and 95 % band of each joint",
-        headings=("joint", *keys, "rotor inertia", "band"),
+        headings=("joint", *units, "rotor inertia [kg m²]", "band [N m]"),
         rows=[
             (
                 joint,
@@ -122,8 +128,8 @@ def _friction(found: Identification) -> ReportTable:
             )
             for j, (joint, law) in enumerate(zip(found.joints, found.model.friction, strict=True))
         ],
-        note="fv qd + fo + (fc + fl |g(q)| + fs exp(-(qd / vs)²)) tanh((qd + shift) / width); SI units. "
-        "fo and shift may do work, and differ between recordings.",
+        note="fv qd + fo + (fc + fl |g(q)| + fs exp(-(qd / vs)²)) tanh((qd + shift) / width); prismatic joints: "
+        "m for rad, N for N m, kg for kg m². fo and shift may do work, and differ between recordings.",
     )
 
 
@@ -137,10 +143,14 @@ def _intervals(found: Identification) -> ReportTable:
 
 
 def _prior(found: Identification) -> ReportTable:
+    units = dict(zip(PARAMETERS, UNITS, strict=True))
     return ReportTable(
         title="What the prior decided",
-        headings=("link", "number", "prior", "value", "from the data [%]"),
-        rows=[(p.link, p.parameter, p.prior, p.value, 100 * p.share) for p in found.prior_decided],
+        headings=("link", "number", "prior", "value", "unit", "from the data [%]"),
+        rows=[
+            (p.link, p.parameter, p.prior, p.value, units[p.parameter], 100 * p.share)
+            for p in found.prior_decided
+        ],
         note="These numbers are the description's more than the data's: torques don't determine them. "
         "`ids excite --given RECORDING` searches for a motion with more information.",
     )

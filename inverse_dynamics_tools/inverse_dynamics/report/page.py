@@ -21,7 +21,7 @@ import numpy as np
 from inverse_dynamics.base.files import write_text_whole
 from inverse_dynamics.base.wording import printable, solver_name
 from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.thinning import peaks
+from inverse_dynamics.figures.thinning import error_limit, peaks
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -65,16 +65,19 @@ class ReportRun:
     computed: Floats
     table: Sequence[JointError]
     assumptions: Sequence[tuple[str, str]]
+    name: str = "computed"  # of the computed torques
     links: Sequence[dict[str, Any]] = ()
-    other_table: Sequence[JointError] = ()
-    other_table_title: str = ""
+    tables: Sequence[ReportTable] = ()  # to be unfolded
     notes: Sequence[str] = ()
-    figures: Sequence[Figure] = field(default_factory=list)
+    figures: Sequence[Figure] = ()
     others: Mapping[str, Floats] = field(default_factory=dict)  # by title: torques to choose, N x n
-    bands: Sequence[Band] = ()
-    left_out: Sequence[
-        tuple[float, float]
-    ] = ()  # [s] from, to: samples of other_table's difference
+    others_shown: bool = False  # at first
+    error: Floats | None = None  # N x n of the plots on the right; None: computed - measured
+    error_name: str = "computed - measured"
+    band_name: str = "95 % band"
+    bands: Sequence[Band] = ()  # about computed torques, or, where `error` is given, about zero
+    left_out: Sequence[tuple[float, float]] = ()  # [s] from, to: samples that are invalid
+    contacts: Sequence[tuple[float, float]] = ()  # [s] from, to
     scene_notes: Sequence[str] = ()  # what of the robot isn't drawn as described
     cause: str = ""  # why torques differ, where that was found
 
@@ -106,51 +109,37 @@ class ReportSummary:
     more: Sequence[ReportTable] = ()
 
 
-@dataclass(frozen=True)
-class ReportComparison:
-    """Runs of one recording side by side: their errors, and a figure."""
-
-    title: str
-    description: str
-    table: ReportTable
-    figure: Figure
-
-
-def _joint_table(title: str, errors: Sequence[JointError]) -> ReportTable:
+def joint_table(title: str, errors: Sequence[JointError]) -> ReportTable:
     """Errors of each joint."""
-    rows = [(e.joint, e.mae, e.rmse, e.bias, e.unit, 100 * e.nrmse, e.r2) for e in errors]
-    return ReportTable(title, ("joint", "MAE", "RMSE", "bias", "unit", "NRMSE [%]", "R²"), rows)
+    rows = [(e.joint, e.rmse, e.mae, e.bias, e.unit, 100 * e.nrmse, e.r2) for e in errors]
+    return ReportTable(title, ("joint", "RMSE", "MAE", "bias", "unit", "NRMSE [%]", "R²"), rows)
 
 
 def write_page(
-    path: Path,
-    title: str,
-    runs: Sequence[ReportRun],
-    comparisons: Sequence[ReportComparison] = (),
-    notes: Sequence[str] = (),
+    path: Path, title: str, runs: Sequence[ReportRun], notes: Sequence[str] = ()
 ) -> None:
     """Write the page, whole or not at all; what is there is replaced. Raises OutputError.
 
     notes: what a reader should know of the page as a whole: a robot that is missing, for one.
     """
-    write_text_whole(path, render_page(title, runs, comparisons, notes))
+    write_text_whole(path, render_page(title, runs, notes))
 
 
 def render_page(
     title: str,
     runs: Sequence[ReportRun],
-    comparisons: Sequence[ReportComparison] = (),
     notes: Sequence[str] = (),
     summary: ReportSummary | None = None,
 ) -> str:
     """The page as text."""
+    views = [_view(run, i) for i, run in enumerate(runs)]
     script = "\n".join(_asset(name) for name in ("scene.js", "plots.js", "viewer.js"))
     return template("page.html").render(
         title=title,
         script=script,
         data=_json_for_html([_data(run, i) for i, run in enumerate(runs)]),
-        runs=[_view(run, i) for i, run in enumerate(runs)],
-        comparisons=comparisons,
+        runs=views,
+        glance=_glance(views) if len(views) > 1 and summary is None else None,
         notes=notes,
         summary=summary,
     )
@@ -167,9 +156,7 @@ def template(name: str) -> Template:
         trim_blocks=True,
         finalize=_printable,
     )
-    environment.filters["figure"] = _figure
-    environment.filters["percents"] = lambda shares: [100.0 * share for share in shares]
-    environment.filters["aligned"] = aligned
+    environment.filters["number"] = number
     environment.filters["breakable"] = _breakable
     environment.globals["style"] = _asset("style.css")
     environment.globals["light"] = _variables(palette.LIGHT)
@@ -215,54 +202,80 @@ def _view(run: ReportRun, index: int) -> dict[str, Any]:
         "duration": f"{run.time[-1] - run.time[0]:.1f} s",
         "unit": units.pop() if len(units) == 1 else "",
         "mean_rmse": float(np.mean([row.rmse for row in rows])),
-        "mean_nrmse": float(np.mean([*shares.values()])) if shares else math.nan,
+        "mean_nrmse": 100 * float(np.mean([*shares.values()])) if shares else math.nan,
         "worst_joint": worst,
-        "worst_nrmse": shares.get(worst, math.nan),
-        "table": _joint_table("Errors of each joint", rows),
-        "other_table": _joint_table(run.other_table_title, run.other_table),
+        "worst_nrmse": 100 * shares.get(worst, math.nan),
+        "table": joint_table("Errors of each joint", rows),
         "joints": [row.joint for row in rows],
         "thinned": f"{MAX_SAMPLES:,}" if len(run.time) > MAX_SAMPLES else "",
     }
+
+
+def _glance(views: Sequence[Mapping[str, Any]]) -> ReportTable:
+    """All runs."""
+    from markupsafe import Markup
+
+    names = ("mean_rmse", "unit", "mean_nrmse", "worst_joint", "worst_nrmse", "solver", "samples")
+    return ReportTable(
+        "At a glance",
+        ("robot", "mean RMSE", "unit", "mean NRMSE [%]", "worst joint", "its NRMSE [%]", "solver", "samples"),
+        [
+            (
+                Markup('<a href="#{}">{}</a>').format(view["id"], printable(view["title"])),
+                *(view[name] for name in names),
+            )
+            for view in views
+        ],
+    )  # fmt: skip
 
 
 def _data(run: ReportRun, index: int) -> dict[str, Any]:
     """A run for the script."""
     # The motion in 3D is drawn at screen rate and interpolated: evenly spaced samples serve it.
     stride = math.ceil(len(run.time) / MAX_SAMPLES)
-    keep = np.unique(np.append(np.arange(0, len(run.time), stride), len(run.time) - 1))
-    time = run.time - run.time[0]
-    error = run.computed - run.measured
+    drawn = np.unique(np.append(np.arange(0, len(run.time), stride), len(run.time) - 1))
+    start, time = run.time[0], run.time - run.time[0]
+    valid = np.ones(len(time), dtype=bool)
+    for begin, end in run.left_out:
+        valid[slice(*np.searchsorted(run.time, (begin, np.nextafter(end, np.inf))))] = False
+    error = run.computed - run.measured if run.error is None else run.error
+
+    def series(values: Floats, *, is_error: bool = False) -> dict[str, Any]:
+        limit = {"limit": error_limit(values[valid]) or 1.0} if is_error else {}
+        return {**_series(time, values), **limit}
+
     return {
         "id": f"run-{index + 1}",
+        "name": run.name,
+        "error_name": run.error_name,
         "joints": [
             {
                 "name": row.joint,
                 "unit": row.unit,
-                "measured": _series(time, run.measured[:, j]),
-                "computed": _series(time, run.computed[:, j]),
-                "error": _series(time, error[:, j]),
+                "measured": series(run.measured[:, j]),
+                "computed": series(run.computed[:, j]),
+                "error": series(error[:, j], is_error=True),
                 "others": [
                     {
                         "name": name,
-                        "computed": _series(time, computed[:, j]),
-                        "error": _series(time, computed[:, j] - run.measured[:, j]),
+                        "computed": series(other[:, j]),
+                        "error": series(other[:, j] - run.measured[:, j], is_error=True),
                     }
-                    for name, computed in run.others.items()
+                    for name, other in run.others.items()
                 ],
                 "band": [
-                    {
-                        "from": band.start - run.time[0],
-                        "to": band.end - run.time[0],
-                        "half": float(band.half[j]),
-                    }
-                    for band in run.bands
+                    {"from": b.start - start, "to": b.end - start, "half": float(b.half[j])}
+                    for b in run.bands
                 ],
             }
             for j, row in enumerate(run.table)
         ],
-        "left_out": [[begin - run.time[0], end - run.time[0]] for begin, end in run.left_out],
-        "time": _base64(time[keep]),
-        "q": _base64(run.q[keep].T),
+        "others_shown": run.others_shown,
+        "band_is_of_errors": run.error is not None,
+        "left_out": [[begin - start, end - start] for begin, end in run.left_out],
+        "contacts": [[begin - start, end - start] for begin, end in run.contacts],
+        "time": _base64(time[drawn]),
+        "q": _base64(run.q[drawn].T),
         "links": list(run.links),
     }
 
@@ -284,43 +297,31 @@ def _json_for_html(value: Any) -> str:
     return json.dumps(value, allow_nan=False).replace("<", "\\u003c")
 
 
-_MOST_DECIMALS = 8
+_LEAST_PLAIN = 1e-3  # a smaller number has a power of ten
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _FIGURE_SPACE, _PUNCTUATION_SPACE = "\N{FIGURE SPACE}", "\N{PUNCTUATION SPACE}"
 
 
-def _figure(value: float) -> str:
-    """Three significant digits; a dash where there is no number."""
-    return aligned([value])[0].rstrip()
+def number(value: float) -> str:
+    """Three significant digits, as people write them; a dash where there is no number."""
+    if not math.isfinite(value):
+        return "\N{EN DASH}"
+    mantissa, _, exponent = f"{value:.2e}".partition("e")  # of the rounded number: 0.9999 is 1.00
+    if 0 < abs(value) < _LEAST_PLAIN:
+        return f"{mantissa}·10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+    return f"{value:.{max(0, 2 - int(exponent))}f}" if value else "0"
 
 
 def aligned(values: Sequence[str | float]) -> list[str]:
-    """The numbers of a column with three significant digits each, their decimal points below each other.
-
-    All plain, or, where one of them would need more than eight decimals, all with exponents. Texts stay.
-    """
-    numbers = [v for v in values if not isinstance(v, str) and math.isfinite(v) and v != 0.0]
-    plain = all(_decimals(value) <= _MOST_DECIMALS for value in numbers)
-    texts = [v if isinstance(v, str) else _text(v, plain=plain) for v in values]
-    longest = max((len(t.partition(".")[2]) for t in texts if _is_number(t)), default=0)
-    return [_padded(text, longest) if _is_number(text) else text for text in texts]
-
-
-def _decimals(value: float) -> int:
-    """How many decimals show three significant digits of a number, which isn't zero."""
-    exponent = int(f"{abs(value):.2e}".partition("e")[2])  # of the rounded number: 0.9999 is 1.00
-    return max(0, 2 - exponent)
-
-
-def _text(value: float, *, plain: bool) -> str:
-    if not math.isfinite(value):
-        return "\N{EN DASH}"
-    if not plain:
-        return f"{value:.2e}"
-    return "0" if value == 0.0 else f"{value:.{_decimals(value)}f}"
-
-
-def _is_number(text: str) -> bool:
-    return text[-1:].isdigit() and text.lstrip("-").replace(".", "", 1).isdigit()
+    """The numbers of a column, their decimal points below each other. Texts stay."""
+    texts = [value if isinstance(value, str) else number(value) for value in values]
+    plain = [not isinstance(v, str) and t[-1].isascii() for v, t in zip(values, texts, strict=True)]
+    decimals = [len(text.partition(".")[2]) for text in texts]
+    longest = max((d for d, is_plain in zip(decimals, plain, strict=True) if is_plain), default=0)
+    return [
+        _padded(text, longest) if is_plain else text
+        for text, is_plain in zip(texts, plain, strict=True)
+    ]
 
 
 def _padded(text: str, decimals: int) -> str:

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Time series on a canvas: zoom and pan in time shared by a group of plots, a cursor on a canvas of its own.
+// Time series on a canvas: zoom and pan in time shared by a group of plots; a cursor and its values on a canvas of their own.
 //
 //   const group = createPlotGroup(time, {onCursor: (t) => ...});
 //   group.add(element, {label: "elbow_joint", unit: "N m", series: [{name, time, values, style: "measured"}]});
 //   group.setCursor(1.5);
 //   group.setHidden("URDF", true);
 //
-// time: s, increasing, of a series as many as its values. A series may be hidden at first. band: [{about, from, to, half}]:
-// half the width of a band about the series of that name, or about zero where there is `error`. left_out: [[from, to]],
-// shaded. Colours are those of the page's CSS variables. Dragging zooms, shift and dragging pans, a click sets
-// the cursor, a double click shows everything.
+// time: s, increasing, of a series as many as its values. A series may be hidden at first. limit: of a series, that of its
+// axis, symmetric about zero; else all values are shown. band: [{from, to, half}]: half the width of a band about the
+// computed series, or about zero. left_out, contacts: [[from, to]], shaded. Colours are those of the page's CSS variables.
+// With a mouse, pointing shows values, a click sets the cursor, dragging zooms, shift and dragging pans, a double click
+// shows everything; a finger sets the cursor.
 "use strict";
 
 // Measured is wide and below the computed line, so that both are visible where many samples share a pixel.
-const kWidths = {measured: 2.2, computed: 1.3, error: 1.1, other0: 1.2, other1: 1.2, other2: 1.2};
+const kWidths = {measured: 2.2, computed: 1.3, error: 1.1};
+const kOtherWidth = 1.2;
 
 // A colour of the page, light or dark (figures/palette.py).
 const theme = new Map();  // empty it where the scheme changes
@@ -58,22 +60,15 @@ function indexAt(time, t) {
   return low;
 }
 
-// Magnitude beyond which an error is a spike that would flatten the rest: 1.5 times the 99.5 % quantile.
-function spikeLimit(all_series) {
-  const magnitudes = all_series.flatMap((series) => Array.from(series.values, Math.abs)).sort((a, b) => a - b);
-  return 1.5 * magnitudes[Math.floor(0.995 * (magnitudes.length - 1))] || Infinity;
-}
-
-function range(all_series, {error = all_series.every((series) => series.style === "error"), band} = {}) {
+// Range of an axis. Where each series has a limit, spikes may lie beyond it.
+function range(all_series, band = []) {
   let [low, high] = extremes(all_series);
-  if (error) {
-    const limit = Math.max(spikeLimit(all_series), ...(band || []).map((part) => part.half));
-    low = Math.max(low, -limit);
-    high = Math.min(high, limit);
-  }
-  if (!(high > low)) {
+  if (all_series.every((series) => series.limit > 0)) {
+    high = Math.max(...[...all_series, ...band].map((part) => part.half || part.limit));
+    low = -high;
+  } else if (!(high > low)) {
     const middle = Number.isFinite(low) ? low : 0;
-    return [middle - 1, middle + 1];
+    [low, high] = [middle - 1, middle + 1];
   }
   const margin = 0.06 * (high - low);
   return [low - margin, high + margin];
@@ -139,7 +134,10 @@ class Plot {
   }
 
   setRange() {
-    this.range = range(this.shown(), this.options);
+    this.range = range(this.shown(), this.options.band);
+    const [low, high] = extremes(this.shown());
+    const cut = low < this.range[0] || high > this.range[1];
+    this.cut = cut ? `, cut: peak ${short(Math.max(-low, high), 3)}` : "";
   }
 
   // The plot in words, for those who don't see it.
@@ -177,14 +175,16 @@ class Plot {
     const {context, width, height} = prepare(this.base, 2);  // fine enough for paper
     if (width === 0) return;
     this.measure();
+    const {left_out = [], contacts = []} = this.options;
+    for (const span of left_out) this.fillSpan(context, span, view, "left-out", 1, 3);
+    for (const span of contacts) this.fillSpan(context, span, view, "contact", 0.35, 2);
     this.drawAxes(context, width, height, view);
     context.save();
     context.beginPath();
     context.rect(kMargin.left, kMargin.top, width - kMargin.left - kMargin.right, height - kMargin.top - kMargin.bottom);
     context.clip();
-    for (const span of this.options.left_out || []) this.fillSpan(context, span, view, "measured", 0.28, 1);
     this.drawBand(context, view);
-    for (const series of this.shown()) this.drawSeries(context, series, width, view);
+    for (const series of this.shown()) this.drawSeries(context, series, view);
     context.restore();
   }
 
@@ -213,28 +213,28 @@ class Plot {
     context.textBaseline = "alphabetic";
     context.font = "600 12px system-ui, sans-serif";
     context.fillStyle = themeColor("ink");
-    const title = `${this.options.label} [${this.options.unit}]`;
-    context.fillText(title, kMargin.left, 12);
-    this.title_end = kMargin.left + context.measureText(title).width;
+    context.fillText(`${this.options.label} [${this.options.unit}]${this.cut}`, kMargin.left, 12);
   }
 
   // Fills the plot between two times, at least `least` pixels wide.
   fillSpan(context, [from, to], view, name, alpha, least = 0) {
-    const x = this.x(from, view), height = this.height - kMargin.top - kMargin.bottom;
+    if (to < view.low || from > view.high) return;
+    const left = Math.max(this.x(from, view), kMargin.left);
+    const right = Math.min(Math.max(this.x(to, view), left + least), this.width - kMargin.right);
     context.fillStyle = themeColor(name);
     context.globalAlpha = alpha;
-    context.fillRect(x, kMargin.top, Math.max(least, this.x(to, view) - x), height);
+    context.fillRect(left, kMargin.top, right - left, this.height - kMargin.top - kMargin.bottom);
     context.globalAlpha = 1;
   }
 
   drawBand(context, view) {
-    const about = this.options.series.find((series) => series.name === "computed");
+    const about = this.options.series.find((series) => series.style === "computed");
     context.fillStyle = themeColor("computed");
     context.globalAlpha = 0.18;
     for (const {from, to, half} of this.options.band || []) {
       if (to < view.low || from > view.high) continue;
       const edge = [[from, 0], [to, 0]];  // of errors; else about the computed curve
-      if (!this.options.error) {
+      if (about) {
         const first = indexAt(about.time, Math.max(from, view.low));
         const last = indexAt(about.time, Math.min(to, view.high)) + 1;
         edge.splice(0, 2, ...Array.from(about.time.slice(first, last + 1), (t, i) => [t, about.values[first + i]]));
@@ -247,71 +247,56 @@ class Plot {
     context.globalAlpha = 1;
   }
 
-  drawSeries(context, series, width, view) {
+  drawSeries(context, series, view) {
     context.strokeStyle = themeColor(series.style);
-    context.lineWidth = kWidths[series.style];
+    context.lineWidth = kWidths[series.style] || kOtherWidth;
     context.lineJoin = "round";
     context.beginPath();
     const {time, values} = series;
     const first = indexAt(time, view.low);
     const last = Math.min(time.length - 1, indexAt(time, view.high) + 1);
-    const pixels = width - kMargin.left - kMargin.right;
-    if (last - first > 4 * pixels) this.traceColumns(context, series, first, last, view);
-    else {
-      for (let i = first; i <= last; ++i) context.lineTo(this.x(time[i], view), this.y(values[i]));
-    }
+    for (let i = first; i <= last; ++i) context.lineTo(this.x(time[i], view), this.y(values[i]));
     context.stroke();
   }
 
-  // More samples than pixels: from each column of pixels its first, least, greatest and last value in the order of
-  // time. That covers the pixels that a line through all samples covers.
-  traceColumns(context, {time, values}, first, last, view) {
-    let begin = first;
-    while (begin <= last) {
-      const column = Math.round(this.x(time[begin], view));
-      let low = begin, high = begin, end = begin;
-      for (; end <= last && Math.round(this.x(time[end], view)) === column; ++end) {
-        if (values[end] < values[low]) low = end;
-        if (values[end] > values[high]) high = end;
-      }
-      for (const i of [begin, Math.min(low, high), Math.max(low, high), end - 1]) context.lineTo(column, this.y(values[i]));
-      begin = end;
-    }
-  }
-
-  drawOverlay(view, cursor, selection) {
+  // The cursor; the values at the place that is pointed at, or else at the cursor.
+  drawOverlay(view, cursor, pointed, selection) {
     const {context, width, height} = prepare(this.overlay, 1);
     if (width === 0) return;
     this.measure();
     if (selection) this.fillSpan(context, selection, view, "error", 0.15);
-    const x = this.x(cursor, view);
-    if (x >= kMargin.left && x <= width - kMargin.right) {
-      context.strokeStyle = themeColor("cursor");
-      context.lineWidth = 1.5;
+    context.lineWidth = 1.5;
+    for (const [t, name] of [[cursor, "cursor"], [pointed, "soft"]]) {
+      const x = this.x(t, view);
+      if (t === null || x < kMargin.left || x > width - kMargin.right) continue;
+      context.strokeStyle = themeColor(name);
       strokeLine(context, x, kMargin.top, x, height - kMargin.bottom);
     }
-    this.drawReadout(context, width, cursor);
+    this.drawValues(context, view, pointed === null ? cursor : pointed);
   }
 
-  // Values at the cursor, each beside a piece of its line: with their names, without them where these would touch the
-  // title, or none.
-  drawReadout(context, width, cursor) {
+  // A box beside the place: the time, and the value of each series beside a piece of its line.
+  drawValues(context, view, t) {
+    const x = this.x(t, view);
+    if (t === view.low || x < kMargin.left || x > this.width - kMargin.right) return;
     context.font = "11px system-ui, sans-serif";
-    context.textAlign = "right";
-    const all = this.shown().reverse();
-    const values = all.map((series) => short(series.values[indexAt(series.time, cursor)], 3));
-    const named = values.map((value, i) => `${all[i].name} ${value}`);
-    const length = (texts) => texts.reduce((sum, text) => sum + context.measureText(text).width + 26, 0);
-    const room = width - kMargin.right - this.title_end;
-    const texts = [named, values, []].find((candidate) => length(candidate) <= room) || [];
-    let x = width - kMargin.right;
-    texts.forEach((text, i) => {
+    const rows = [{text: `${t.toFixed(2)} s`}, ...this.shown().reverse().map((series) => ({
+      style: series.style, text: short(series.values[indexAt(series.time, t)], 3)}))];
+    const width = Math.max(...rows.map((row) => context.measureText(row.text).width)) + 27;
+    const height = 14 * rows.length + 4;
+    const left = Math.round(x + 6 + width < this.width - kMargin.right ? x + 6 : x - 6 - width) + 0.5;
+    context.fillStyle = themeColor("paper");
+    context.strokeStyle = themeColor("line");
+    context.lineWidth = 1;
+    context.fillRect(left, kMargin.top + 0.5, width, height);
+    context.strokeRect(left, kMargin.top + 0.5, width, height);
+    rows.forEach(({style, text}, i) => {
+      const y = kMargin.top + 13 + 14 * i, thick = kWidths[style] || kOtherWidth;
       context.fillStyle = themeColor("ink");
-      context.fillText(text, x, 12);
-      x -= context.measureText(text).width;
-      context.fillStyle = themeColor(all[i].style);
-      context.fillRect(x - 13, 8.5 - kWidths[all[i].style] / 2, 9, kWidths[all[i].style]);
-      x -= 26;
+      context.fillText(text, left + (style ? 20 : 5), y);
+      if (!style) return;
+      context.fillStyle = themeColor(style);
+      context.fillRect(left + 5, y - 4 - thick / 2, 10, thick);
     });
   }
 }
@@ -322,9 +307,9 @@ function createPlotGroup(time, {onCursor}) {
   const view = {...everything};
   const plots = [];
   let cursor = time[0];
-  let selection = null;
+  let pointed = null, selection = null;
 
-  const drawOverlays = () => plots.forEach((plot) => plot.drawOverlay(view, cursor, selection));
+  const drawOverlays = () => plots.forEach((plot) => plot.drawOverlay(view, cursor, pointed, selection));
   const drawAll = () => {
     plots.forEach((plot) => plot.draw(view));
     drawOverlays();
@@ -350,27 +335,34 @@ function createPlotGroup(time, {onCursor}) {
   function attach(plot) {
     let start = null, start_view = null;
     const at = (event) => plot.t(event.offsetX, view);
+    const point = (t) => {
+      pointed = t;
+      drawOverlays();
+    };
     plot.overlay.addEventListener("pointerdown", (event) => {
+      if (event.pointerType === "touch") return onCursor(at(event));
       start = at(event);
       start_view = event.shiftKey ? {...view} : null;
       plot.overlay.setPointerCapture(event.pointerId);
     });
     plot.overlay.addEventListener("pointermove", (event) => {
-      if (start === null) return;
-      if (start_view) {
+      if (event.pointerType === "touch") onCursor(at(event));
+      else if (start_view) {
         const shift = plot.t(event.offsetX, start_view) - start;
         setView(start_view.low - shift, start_view.high - shift);
       } else {
-        selection = [start, at(event)].sort((a, b) => a - b);
-        drawOverlays();
+        if (start !== null) selection = [start, at(event)].sort((a, b) => a - b);
+        point(at(event));
       }
     });
+    plot.overlay.addEventListener("pointerleave", () => point(null));
     plot.overlay.addEventListener("pointerup", (event) => {
+      if (start === null) return;
       const chosen = selection, panned = start_view;
       start = start_view = selection = null;
       if (panned) return;
       if (chosen && plot.x(chosen[1], view) - plot.x(chosen[0], view) > 4) setView(...chosen);
-      else onCursor(Math.min(Math.max(at(event), everything.low), everything.high));
+      else onCursor(at(event));
     });
     plot.overlay.addEventListener("dblclick", () => setView(everything.low, everything.high));
     plot.overlay.addEventListener("wheel", (event) => {

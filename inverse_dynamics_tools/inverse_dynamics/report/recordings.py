@@ -58,10 +58,7 @@ def render_recordings_page(
         title=title,
         facts=_facts(summaries, failures),
         failures=failures.items(),
-        joints=[
-            {"name": error.joint, "unit": error.unit, "bars": _bars(column)}
-            for error, column in zip(summaries[0].errors, columns, strict=True)
-        ],
+        joints=summaries[0].errors,
         rows=[
             {
                 **_row(summary, middle),
@@ -107,12 +104,6 @@ def _accelerations(summaries: Sequence[EvaluationSummary]) -> str:
         least, most = min(cutoffs), max(cutoffs)
         text += f", cut-off {least:.3g}" + (f" to {most:.3g} Hz" if most > least else " Hz")
     return text
-
-
-def _bars(column: Sequence[float]) -> str:
-    """The errors of a joint, as a path in the SVG above its column."""
-    highest = max(column) or 1.0
-    return "".join(f"M{k + 0.5} 1V{1 - value / highest:.3f}" for k, value in enumerate(column))
 
 
 def _row(summary: EvaluationSummary, middle: Sequence[float]) -> dict[str, Any]:

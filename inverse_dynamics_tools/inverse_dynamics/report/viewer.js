@@ -42,15 +42,18 @@ class Player {
   addPlots(run) {
     // A series has times of its own where the page holds only its peaks.
     const series = (name, data, style = name, hidden = false) => ({
-      name, style, hidden, values: decode(data.values), time: data.time ? decode(data.time) : this.time});
-    const left_out = run.left_out;
+      ...data, name, style, hidden, values: decode(data.values), time: data.time ? decode(data.time) : this.time});
+    const {left_out, contacts, error_name, others_shown} = run;
     run.joints.forEach((joint, j) => {
       const [torque_element, error_element] = this.section.querySelectorAll(`[data-joint="${j}"] .plot`);
-      const others = (what) => joint.others.map((other, i) => series(other.name, other[what], `other${i}`, true));
-      this.plots.add(torque_element, {label: joint.name, unit: joint.unit, band: joint.band, left_out, series: [
-        series("measured", joint.measured), ...others("computed"), series("computed", joint.computed)]});
-      this.plots.add(error_element, {label: "computed - measured", unit: joint.unit, band: joint.band, left_out, error: true, series: [
-        ...others("error"), series("error", joint.error)]});
+      const others = (what) => joint.others.map(
+          (other, i) => series(other.name, other[what], `run${i % 4 + 1}`, !others_shown));
+      const common = {unit: joint.unit, left_out, contacts};
+      const band = run.band_is_of_errors ? [] : joint.band;
+      this.plots.add(torque_element, {...common, label: joint.name, band, series: [
+        series("measured", joint.measured), ...others("computed"), series(run.name, joint.computed, "computed")]});
+      this.plots.add(error_element, {...common, label: error_name, band: joint.band, series: [
+        ...others("error"), series(error_name, joint.error, "error")]});
     });
   }
 
@@ -73,6 +76,7 @@ class Player {
         event.preventDefault();
       }
     });
+    this.section.querySelector(".zoom-in").addEventListener("click", () => this.plots.zoom(0.7));
     this.section.querySelector(".show-all").addEventListener("click", () => this.plots.showAll());
     this.section.querySelector(".reset-view").addEventListener("click", () => this.scene?.reset());
   }

@@ -31,8 +31,7 @@ def write_comparison(
 ) -> None:
     """Write all files of a comparison, or none of them. Raises OutputError.
 
-    figures: of "png", "svg", "pdf"; none of them: only that of the page. page: whether report.html is
-    among the files.
+    figures: of "png", "svg", "pdf". page: whether report.html is among the files.
     """
     from inverse_dynamics.figures.plots import check_formats, comparison_figure, save_figure
 
@@ -45,17 +44,9 @@ def write_comparison(
         files = (target / f"comparison.{f}" for f in figures)
         save_figure(lambda: comparison_figure(comparison), *files)
         if page:
-            _write_page(target / "report.html", title, comparison)
+            from inverse_dynamics.report import report_comparison, write_page
 
-
-def _write_page(file: Path, title: str, comparison: Comparison) -> None:
-    from inverse_dynamics.report import report_comparison, report_run, write_page
-
-    runs = [
-        report_run(evaluation, label)
-        for evaluation, label in zip(comparison.evaluations, comparison.labels, strict=True)
-    ]
-    write_page(file, title, runs, [report_comparison(comparison)])
+            write_page(target / "report.html", title, [report_comparison(comparison)])
 
 
 def summary(comparison: Comparison) -> dict[str, Any]:

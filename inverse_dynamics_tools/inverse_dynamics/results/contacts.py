@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Contacts of a recording in a directory: contacts.json, series.npz, contacts.png."""
+"""Contacts of a recording in a directory: contacts.json, series.npz, contacts.png, report.html."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.figures.contacts import contact_figure
 from inverse_dynamics.figures.plots import FORMATS, check_formats, save_figure
+from inverse_dynamics.report.external_torques import render_contacts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +20,9 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.contacts import Contacts
 
 MARK = "contacts.json"
-CONTENTS = Contents(MARK, (MARK, "series.npz", *(f"contacts.{suffix}" for suffix in FORMATS)))
+CONTENTS = Contents(
+    MARK, (MARK, "series.npz", "report.html", *(f"contacts.{suffix}" for suffix in FORMATS))
+)
 
 
 def write_contacts(
@@ -41,6 +44,7 @@ def write_contacts(
         names = ["time", "torques", "valid", "contact"]
         names += ["wrenches", "unseen"] if contacts.wrenches is not None else []
         np.savez(directory / "series.npz", **{name: getattr(contacts, name) for name in names})
+        write_text(directory / "report.html", render_contacts(contacts))
         files = (directory / f"contacts.{suffix}" for suffix in figures)
         save_figure(lambda: contact_figure(contacts), *files)
 

@@ -40,11 +40,11 @@ MARK = "demo.json"
 SIMULATED = ("ur10_simulated", "panda_simulated")
 REAL = {"ur10_real": "ur10_exciting_trajectory", "panda_real": "panda_exciting_trajectory"}
 
-TITLES = {
-    "ur10_simulated": "UR10, simulated",
-    "panda_simulated": "Panda, simulated",
+TITLES = {  # in the order of the page
     "ur10_real": "UR10, real",
     "panda_real": "Panda, real",
+    "ur10_simulated": "UR10, simulated",
+    "panda_simulated": "Panda, simulated",
 }
 HOW_TO_GET_RECORDINGS = (
     "`ids data` fetches the recordings of the real robots, a few MB, from "
@@ -139,8 +139,8 @@ def run_demo(
             rigid = evaluate(real["ur10_real"], "ur10_real", plugin=RIGID_BODY, progress=progress)
             # The figure of the comparison shows its torques.
             write_evaluation(rigid, target / "ur10_real_urdf", figures=(), progress=progress)
-            labels = ("rigid bodies of the URDF", "identified, with friction")
-            comparison = compare([rigid, evaluations["ur10_real"]], labels)
+            labels = ("identified, with friction", "rigid bodies of the URDF")
+            comparison = compare([evaluations["ur10_real"], rigid], labels)
             write_comparison(comparison, target / "comparison", figures=figures, page=False)
         say("writing the page")
         _write_page(target, evaluations, comparison, notes)
@@ -221,16 +221,13 @@ def _write_page(
 ) -> None:
     from inverse_dynamics.report import report_comparison, report_run, write_page
 
-    shown = [] if comparison is None else [report_comparison(comparison, *_COMPARISON)]
-    runs = [report_run(e, TITLES[name]) for name, e in evaluations.items()]
+    runs = {name: report_run(e, TITLES[name]) for name, e in evaluations.items()}
+    if comparison is not None:
+        name = "ur10_real"
+        runs[name] = report_comparison(comparison, TITLES[name], shown=False)
     title = f"{_COUNTS[len(runs)]} robots: measured and computed torques"
-    write_page(target / "report.html", title, runs, shown, notes)
+    write_page(target / "report.html", title, list(runs.values()), notes)
     write_text(target / MARK, json_text(summary(evaluations, notes)))
 
 
 _COUNTS = {2: "Two", 3: "Three", 4: "Four"}
-_COMPARISON = (
-    "Gain by identification",
-    "The same recording of the real UR10, computed from the masses and inertia that its URDF states, and "
-    "from the model identified on the robot, with friction.",
-)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A load in files: payload.yaml for --payload and run configurations, all numbers in payload.json."""
+"""A load in files: payload.yaml for --payload and run configurations, all numbers in payload.json, a page."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.figures.contacts import payload_figure
 from inverse_dynamics.figures.plots import check_formats, save_figure
+from inverse_dynamics.report.external_torques import render_payload
 from inverse_dynamics.results.yaml_text import yaml_list, yaml_number
 
 if TYPE_CHECKING:
@@ -25,8 +26,13 @@ _UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))  # ixx ixy ixz iyy iyz
 
 
 def payload_files(out: Path, figures: Sequence[str]) -> tuple[Path, ...]:
-    """All that write_payload() writes: the YAML, the JSON and the figures beside it."""
-    return (out, out.with_suffix(".json"), *(out.with_suffix(f".{suffix}") for suffix in figures))
+    """All that write_payload() writes: the YAML; the JSON, the page and the figures beside it."""
+    beside = (".json", ".html")
+    return (
+        out,
+        *map(out.with_suffix, beside),
+        *(out.with_suffix(f".{suffix}") for suffix in figures),
+    )
 
 
 def check_payload_output(
@@ -61,8 +67,9 @@ def write_payload(
     check_payload_output(out, figures, overwrite=overwrite, inputs=inputs)
     load, *beside = payload_files(out, figures)
     with files_written_whole([*beside, load]) as fresh:  # the load last
-        data, *drawn, body = fresh
+        data, page, *drawn, body = fresh
         write_text(data, json_text(summary(payload)))
+        write_text(page, render_payload(payload))
         if drawn:
             save_figure(lambda: payload_figure(payload), *drawn)
         write_text(body, yaml_text(payload))

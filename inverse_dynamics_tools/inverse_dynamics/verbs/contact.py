@@ -31,6 +31,7 @@ torques of the model for the motion, low-passed. They include what the model lac
 
 results, written whole or not at all:
   contacts.json           contacts; thresholds, and how they were chosen
+  report.html             a page: contacts, the robot in motion, its external torques
   contacts.png            external torques, thresholds, contacts; with --figures also .svg, .pdf
   series.npz              time, torques, valid, contact, wrenches, unseen, for numpy.load()
 """
@@ -123,5 +124,6 @@ def run(arguments: argparse.Namespace) -> None:
             contact_table(contacts) if contacts.contacts else ("contacts", "none"),
             ("figure", [out / f"contacts.{suffix}" for suffix in arguments.figures]),
             ("contacts", out / "contacts.json"),
+            ("page", out / "report.html"),
         ],
     )

@@ -37,6 +37,7 @@ results, all of them or none:
   payload.yaml    mass, center_of_mass and, where the data determine it, inertia, in the tip frame: for
                   --payload, for `payload:` of a run configuration, for the controllers
   payload.json    the same with intervals, covariance, offsets, noise and errors of each joint
+  payload.html    a page: the load, the robot in motion, its torques with and without the load
   payload.png     measured minus computed torques with and without the load
 """
 
@@ -52,7 +53,7 @@ def declare(options: Options) -> None:
     )
     options.output(
         "FILE",
-        "the load, a YAML file; a .json file and the figure are written next to it",
+        "the load, a YAML file; a .json file, a page and the figure are written next to it",
         required=True,
     )
     options.shared("--json")
