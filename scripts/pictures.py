@@ -34,15 +34,14 @@ FRAMES, FRAME_TIME = 56, 120  # ms
 
 
 def make_report() -> None:
-    """The page of a real UR10, from its own player."""
+    """The page of the model identified on a real UR10, from its own player."""
     from PIL import Image
 
     bag = data_directory() / "bags/ur10_exciting_trajectory"
     with tempfile.TemporaryDirectory() as scratch:
-        result, html = Path(scratch) / "Real UR10", Path(scratch) / "report.html"
-        _ids("evaluate", bag, "--robot", "ur10_real", "--figures", "none", "--out", result)
-        _ids("report", result, "--title", "Real UR10", "--out", html)
-        frames = list(_frames(html, Path(scratch) / "profile"))
+        robot = Path(scratch) / "ur10.yaml"
+        _ids("identify", bag, "--robot", "ur10_real", "--out", robot)
+        frames = list(_frames(robot.with_suffix(".html"), Path(scratch) / "profile"))
     colours = frames[len(frames) // 2].quantize(96)
     frames = [frame.quantize(palette=colours, dither=Image.Dither.NONE) for frame in frames]
     first, *rest = frames
@@ -57,10 +56,13 @@ def _frames(html: Path, profile: Path) -> Iterator[Image]:
     driver = _browser(profile)
     try:
         driver.get(html.as_uri())
-        driver.execute_script("document.querySelector('.run .stage').scrollIntoView(true);")
+        driver.execute_script(
+            "document.querySelector('nav').remove();"
+            "document.querySelector('#run-1').scrollIntoView(true);"
+        )
         for k in range(FRAMES):
             driver.execute_script(
-                "const slider = document.querySelector('.run .scrub');"
+                "const slider = document.querySelector('#run-1 .scrub');"
                 "const low = Number(slider.min), high = Number(slider.max);"
                 "slider.value = low + arguments[0] * (high - low);"
                 "slider.dispatchEvent(new Event('input'));",

@@ -16,7 +16,6 @@ from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.scene import scene_of
 from inverse_dynamics.report.page import (
     Band,
-    Figure,
     ReportRun,
     ReportSummary,
     ReportTable,
@@ -27,9 +26,6 @@ from inverse_dynamics.report.page import (
 from inverse_dynamics.report.recordings import render_recordings_page
 from inverse_dynamics.robot.robots import load_robot
 
-WIDE = (
-    '<svg viewBox="0 0 1100 300" width="1100" height="300"><text x="9" y="20">a figure</text></svg>'
-)
 SCREENS = [(390, "light"), (390, "dark"), (1920, "dark"), (1300, "light")]
 
 
@@ -91,7 +87,6 @@ def pages(tmp_path_factory):
         notes=("the first 300 samples are a start transient",),
         tables=[joint_table("The same without the 300 samples that are left out", run.table)],
         contacts=[(2.0, 2.5)],
-        figures=[Figure(WIDE, "What it shows.")],
     )
     names = [row.joint for row in run.table]
     headings = (

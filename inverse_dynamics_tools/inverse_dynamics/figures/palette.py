@@ -11,8 +11,6 @@ from __future__ import annotations
 MEASURED = "#8C959F"
 COMPUTED = "#D55E00"
 ERROR = "#0072B2"
-BEFORE = "#E69F00"  # an error that a change has removed
-CUTOFF = "#009E73"
 CONTACT = "#E69F00"
 QUIET = "#009E73"
 LEFT_OUT = "#F3EBD9"  # behind samples that the second metrics leave out: no grid line looks like it

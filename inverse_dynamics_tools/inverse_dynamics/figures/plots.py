@@ -4,8 +4,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from io import StringIO
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,7 +17,9 @@ from inverse_dynamics.figures.thinning import error_limit, line
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
+    from typing import Any
 
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
@@ -68,6 +69,11 @@ def save_torque_figure(evaluation: Evaluation, *files: Path) -> None:
     save_figure(lambda: torque_figure(evaluation), *files)
 
 
+def save_comparison_figure(comparison: Comparison, *files: Path) -> None:
+    """Save comparison_figure(); formats are those of the suffixes. The same runs, the same bytes."""
+    save_figure(lambda: comparison_figure(comparison), *files)
+
+
 def save_figure(make: Callable[[], Figure], *files: Path) -> None:
     """Save what `make` draws, in the common style. The same figure, the same bytes."""
     if not files:
@@ -78,19 +84,11 @@ def save_figure(make: Callable[[], Figure], *files: Path) -> None:
             figure.savefig(file, dpi=160, metadata=metadata)
 
 
-def svg_of(make: Callable[[], Figure], **style: Any) -> str:
-    """What `make` draws as SVG, in the common style with these changes. The same figure, the same text."""
-    text = StringIO()
-    with _styled(make, **style) as figure:
-        figure.savefig(text, format="svg", metadata={"Date": None})
-    return text.getvalue()
-
-
 @contextmanager
-def _styled(make: Callable[[], Figure], **style: Any) -> Iterator[Figure]:
+def _styled(make: Callable[[], Figure]) -> Iterator[Figure]:
     import matplotlib as mpl
 
-    settings: Any = {**STYLE, "svg.hashsalt": "inverse_dynamics", **style}
+    settings: Any = {**STYLE, "svg.hashsalt": "inverse_dynamics"}
     with mpl.rc_context(settings):
         figure = make()
         make_printable(figure)
@@ -114,33 +112,65 @@ def make_printable(figure: Figure) -> None:
 
 def torque_figure(evaluation: Evaluation) -> Figure:
     """Measured and computed torque over time, and the error, one row per joint."""
-    from matplotlib.figure import Figure
-
-    n = len(evaluation.joint_names)
-    figure = Figure(figsize=(11.0, 1.25 * n + 1.7))
-    axes = _panels(figure, n, top=1.32, bottom=0.5)
-    left_out = evaluation.samples.left_out_spans(evaluation.log)
-    error_style = {"label": "error: computed - measured", **ERROR}
-    runs = [_Run(evaluation, "computed torque", COMPUTED, error_style)]
-    for j, (left, right) in enumerate(axes):
-        _draw_torques(left, runs, j)
-        error = evaluation.errors[j]
-        share = "" if np.isnan(error.nrmse) else f", {100 * error.nrmse:.2g} % of measured range"
-        _draw_errors(right, runs, j, f"RMSE {error.rmse:.3g} {error.unit}{share}")
-        shade(left, left_out, 0.004, LEFT_OUT, label="samples left out")
-        shade(right, left_out, 0.004, LEFT_OUT)
-    _label_time(axes, evaluation)
     robot = evaluation.robot
     friction = "" if robot.friction else ", friction left out"
-    write_heading(
-        figure,
+    heading = (
         robot.description or robot.name,
         f"{robot.name}   ·   solver {robot.plugin}{friction}",
         f"{evaluation.bag.name}, {len(evaluation.log)} samples, {evaluation.log.duration:.1f} s   ·   "
         f"accelerations: {evaluation.accelerations.summary}",
     )
-    for axis in axes[0]:
-        write_legend(figure, axis, axis.get_position().x0, 0.87)
+    return _figure([evaluation], ("computed torque",), [ERROR], heading)
+
+
+def comparison_figure(comparison: Comparison) -> Figure:
+    """Measured torque and that of each run over time, and the runs' errors, one row per joint."""
+    first, labels = comparison.evaluations[0], comparison.labels
+    styles = [{"color": _color(k), "linewidth": 0.9} for k in range(len(labels))]
+    heading = (f"{first.bag.name}: {' against '.join(labels)}",)
+    return _figure(comparison.evaluations, labels, styles, heading)
+
+
+def _color(run: int) -> str:
+    return palette.RUNS[run % len(palette.RUNS)]
+
+
+def _figure(
+    runs: Sequence[Evaluation],
+    labels: Sequence[str],
+    error_styles: Sequence[dict[str, Any]],
+    heading: Sequence[str],
+) -> Figure:
+    """Torques of runs of one recording, and their errors."""
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    first = runs[0]
+    n = len(first.joint_names)
+    figure = Figure(figsize=(11.0, 1.25 * n + 1.7))
+    axes = _panels(figure, n, top=1.32, bottom=0.5)
+    left_out = first.samples.left_out_spans(first.log)
+    for j, (left, right) in enumerate(axes):
+        _draw_torques(left, runs, j)
+        _draw_errors(right, runs, error_styles, j)
+        for axis in (left, right):
+            shade(axis, left_out, 0.004, LEFT_OUT)
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]", color=_MUTED)
+        axis.set_xlim(first.time[0], first.time[-1])
+    write_heading(figure, *heading)
+    torques: list[Line2D | Patch] = [Line2D([], [], label="measured torque", **MEASURED)]
+    torques += [
+        Line2D([], [], label=label, color=_color(k), linewidth=COMPUTED["linewidth"])
+        for k, label in enumerate(labels)
+    ]
+    if left_out:
+        torques.append(Patch(label="samples left out", **LEFT_OUT))
+    error = Line2D([], [], label="error: computed - measured", **error_styles[0])
+    torque_place, error_place = (axis.get_position().x0 for axis in axes[0])
+    write_legend(figure, torques, torque_place, 0.87)
+    write_legend(figure, [error], error_place, 0.87)
     return figure
 
 
@@ -153,78 +183,27 @@ def write_heading(figure: Figure, title: str, *lines: str) -> None:
         figure.text(0.012, 1 - (0.52 + 0.18 * k) / height, text, color=_MUTED)
 
 
-def write_legend(figure: Figure, axes: Axes, left: float, inches: float) -> None:
-    """What is drawn in the axes, in one row at this distance from the top."""
-    handles, labels = axes.get_legend_handles_labels()
-    named = dict(zip(labels, handles, strict=True))
+def write_legend(figure: Figure, handles: Sequence[Artist], left: float, inches: float) -> None:
+    """A legend in one row, at this distance from the top."""
     figure.legend(
-        named.values(),
-        named.keys(),
+        handles=handles,
         loc="upper left",
         bbox_to_anchor=(left, 1 - inches / figure.get_figheight()),
         borderaxespad=0,
         borderpad=0,
-        ncols=len(named),
+        ncols=len(handles),
         frameon=False,
         fontsize=9,
     )
 
 
 def shade(
-    axes: Axes,
-    spans: Sequence[tuple[float, float]],
-    least: float,
-    style: dict[str, Any],
-    label: str = "",
+    axes: Axes, spans: Sequence[tuple[float, float]], least: float, style: dict[str, Any]
 ) -> None:
     """Spans of time [s], each as wide as that part of the axis at least, so that it can be seen."""
     low, high = axes.get_xlim()
     for begin, end in spans:
-        axes.axvspan(begin, max(end, begin + least * (high - low)), label=label, **style)
-
-
-def comparison_figure(comparison: Comparison) -> Figure:
-    """Measured torque and that of each run over time, and the runs' errors, one row per joint."""
-    from matplotlib.figure import Figure
-
-    first = comparison.evaluations[0]
-    n = len(comparison.joint_names)
-    height = 1.25 * n + 1.2
-    figure = Figure(figsize=(11.0, height))
-    figure.suptitle(
-        f"{first.bag.name}: {' against '.join(comparison.labels)}",
-        y=1 - 0.1 / height,
-        fontsize=12,
-        fontweight="bold",
-    )
-    axes = _panels(figure, n, top=0.55, bottom=0.8)
-    runs = []
-    for k, (run, label) in enumerate(zip(comparison.evaluations, comparison.labels, strict=True)):
-        style = {"color": palette.RUNS[k % len(palette.RUNS)], "linewidth": 0.9}
-        runs.append(_Run(run, label, style, style))
-    for j, (left, right) in enumerate(axes):
-        _draw_torques(left, runs, j)
-        rmse = " / ".join(f"{value:.3g}" for value in comparison.rmse[:, j])
-        _draw_errors(right, runs, j, f"error: RMSE {rmse} {first.units[j]}")
-    _label_time(axes, first)
-    handles, labels = axes[0][0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncols=len(labels), frameon=False)
-    return figure
-
-
-def _label_time(axes: NDArray[np.object_], evaluation: Evaluation) -> None:
-    for axis in axes[-1]:
-        axis.set_xlabel("time [s]", color=_MUTED)
-        axis.set_xlim(evaluation.time[0], evaluation.time[-1])
-
-
-class _Run(NamedTuple):
-    """An evaluation, and how its computed torques and errors are drawn."""
-
-    evaluation: Evaluation
-    label: str
-    style: dict[str, Any]
-    error_style: dict[str, Any]
+        axes.axvspan(begin, max(end, begin + least * (high - low)), **style)
 
 
 def _panels(figure: Figure, n: int, *, top: float, bottom: float) -> NDArray[np.object_]:
@@ -242,34 +221,34 @@ def _panels(figure: Figure, n: int, *, top: float, bottom: float) -> NDArray[np.
     return axes
 
 
-def _draw_torques(axes: Axes, runs: Sequence[_Run], j: int) -> None:
-    """Measured torques of a joint, below those that each run computes."""
-    first = runs[0].evaluation
-    axes.plot(*line(first.time, first.measured[:, j]), label="measured torque", **MEASURED)
-    for run in runs:
-        computed = line(run.evaluation.time, run.evaluation.computed[:, j])
-        axes.plot(*computed, label=run.label, **run.style)
+def _draw_torques(axes: Axes, runs: Sequence[Evaluation], j: int) -> None:
+    first = runs[0]
+    axes.plot(*line(first.time, first.measured[:, j]), **MEASURED)
+    for k, run in enumerate(runs):
+        axes.plot(*line(run.time, run.computed[:, j]), **{**COMPUTED, "color": _color(k)})
     axes.set_title(f"{first.joint_names[j]} [{first.units[j]}]", loc="left", fontsize=9, pad=3)
     axes.margins(y=0.08)
 
 
-def _draw_errors(axes: Axes, runs: Sequence[_Run], j: int, text: str) -> None:
-    """Computed minus measured torques of a joint on an axis about zero; text: how large they are."""
+def _draw_errors(
+    axes: Axes, runs: Sequence[Evaluation], styles: Sequence[dict[str, Any]], j: int
+) -> None:
     from matplotlib.ticker import EngFormatter
 
+    errors = [run.computed[:, j] - run.measured[:, j] for run in runs]
+    kept = runs[0].samples.kept
+    largest = 1.1 * (max(error_limit(error[kept]) for error in errors) or 1.0)
+    peak = max(np.abs(error).max() for error in errors)
     axes.axhline(0, color="#999999", linewidth=0.6)
-    largest = peak = 0.0
-    for run in runs:
-        difference = run.evaluation.computed[:, j] - run.evaluation.measured[:, j]
-        largest = max(largest, 1.1 * error_limit(difference[run.evaluation.samples.kept]))
-        peak = max(peak, np.abs(difference).max())
-        time, drawn = line(run.evaluation.time, difference)
-        if len(runs) == 1:
-            axes.fill_between(time, 0, drawn, color=ERROR["color"], alpha=0.15, linewidth=0)
-        axes.plot(time, drawn, **run.error_style)
-    largest = largest or 1.0
+    for run, error, style in zip(runs, errors, styles, strict=True):
+        axes.plot(*line(run.time, error), **style)
     axes.set_ylim(-largest, largest)
     if largest < 0.01:
         axes.yaxis.set_major_formatter(EngFormatter(sep=""))  # 200µ instead of 0.0002
-    cut = f", cut: peak {peak:.3g}" if peak > largest else ""
-    axes.set_title(f"{text}{cut}", loc="left", fontsize=9, pad=3, color=_MUTED)
+    of_joint = [run.errors[j] for run in runs]
+    title = f"RMSE {' / '.join(f'{e.rmse:.3g}' for e in of_joint)} {of_joint[0].unit}"
+    if len(runs) == 1 and not np.isnan(of_joint[0].nrmse):
+        title += f", {100 * of_joint[0].nrmse:.2g} % of measured range"
+    if peak > largest:
+        title += f", cut: peak {peak:.3g}"
+    axes.set_title(title, loc="left", fontsize=9, pad=3, color=_MUTED)

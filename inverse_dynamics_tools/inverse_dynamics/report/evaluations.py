@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.evaluation.evaluation import CAUSE
-from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.scene import Scene, read_scene
-from inverse_dynamics.report.figures import error_figure
-from inverse_dynamics.report.page import Figure, ReportRun, ReportTable, joint_table
+from inverse_dynamics.report.page import ReportRun, ReportTable, joint_table
 
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation.comparison import Comparison
@@ -42,19 +39,7 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
         links=scene.links,
         scene_notes=scene.notes,
         left_out=evaluation.samples.left_out_spans(evaluation.log),
-        figures=[Figure(_inline(error_figure(evaluation)), _caption(evaluation))],
     )
-
-
-def _caption(evaluation: Evaluation) -> str:
-    text = (
-        "Left: errors as a share of each joint's measured range; a box holds the middle half of the "
-        "samples, whiskers 90 %. Right: spectra of measured torque and error, mean over the joints, "
-        "in the same unit"
-    )
-    if evaluation.accelerations.cutoff is not None:
-        text += "; what lies above the cut-off can't be explained by filtered accelerations"
-    return f"{text}."
 
 
 def report_comparison(comparison: Comparison, title: str = "", *, shown: bool = True) -> ReportRun:
@@ -109,26 +94,3 @@ def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
         ("source", robot.source),
     ]
     return [(name, text) for name, text in rows if text]
-
-
-_THEMED = {  # colours of figures, by variable of the page
-    palette.PAPER: "paper",
-    "#000000": "ink",
-    palette.MUTED: "soft",
-    palette.GRID: "grid",
-    palette.COMPUTED: "computed",
-    palette.ERROR: "error",
-}
-
-
-def _inline(svg: str) -> str:
-    """An SVG file as an element of a page, in the page's colours, light or dark."""
-    svg = re.sub(r"^.*?(?=<svg)", "", svg, flags=re.DOTALL)
-
-    def themed(style: re.Match[str]) -> str:
-        text = style[0]
-        for color, variable in _THEMED.items():
-            text = re.sub(color, f"var(--{variable}, {color})", text, flags=re.IGNORECASE)
-        return text
-
-    return re.sub(r'style="[^"]*"', themed, svg)

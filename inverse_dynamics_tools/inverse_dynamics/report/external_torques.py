@@ -41,7 +41,6 @@ def render_contacts(contacts: Contacts) -> str:
         contacts=[(contact.begin, contact.end) for contact in contacts.contacts],
         left_out=contacts.interruptions,
         notes=(),
-        figures=(),
         cause="",
     )
     rate = thresholds.false_alarms_per_hour
@@ -121,7 +120,6 @@ def render_payload(payload: Payload) -> str:
         tables=(),
         left_out=(),
         notes=(),
-        figures=(),
         cause="",
     )
     rows = zip(

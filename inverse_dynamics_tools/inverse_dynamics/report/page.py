@@ -36,14 +36,6 @@ MAX_SAMPLES = 12_000
 
 
 @dataclass(frozen=True)
-class Figure:
-    """A static figure of the page."""
-
-    svg: str
-    caption: str
-
-
-@dataclass(frozen=True)
 class Band:
     """Between two times [s], half the width (n,) of the band about computed torques."""
 
@@ -69,7 +61,6 @@ class ReportRun:
     links: Sequence[dict[str, Any]] = ()
     tables: Sequence[ReportTable] = ()  # to be unfolded
     notes: Sequence[str] = ()
-    figures: Sequence[Figure] = ()
     others: Mapping[str, Floats] = field(default_factory=dict)  # by title: torques to choose, N x n
     others_shown: bool = False  # at first
     error: Floats | None = None  # N x n of the plots on the right; None: computed - measured

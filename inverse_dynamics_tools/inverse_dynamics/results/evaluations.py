@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics._core import Accelerations, Effort, JointError, Verdict
+from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.plain import json_text, read_back
 from inverse_dynamics.base.progress import no_progress
@@ -113,13 +114,12 @@ def evaluate_into(
 def check_writing(storage: str | None, figures: Sequence[str], *, parquet: bool = False) -> None:
     """Raise UserError for a storage or a format that can't be written."""
     from inverse_dynamics.figures.plots import check_formats
-    from inverse_dynamics.results.exports import check_pyarrow
 
     check_formats(figures)
     if storage is not None:
         check_storage(storage)
     if parquet:
-        check_pyarrow()
+        require("a table", "pyarrow")
 
 
 def _write(

@@ -14,7 +14,7 @@ import io
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.base.extras import how_to_install
+from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.files import check_output_file, file_written_whole
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import printable
@@ -50,7 +50,7 @@ def export_series(
     if file_format not in ("csv", "parquet"):
         raise OutputError(f"{file}: expected a name ending in .csv or .parquet")
     check_output_file(file, overwrite=overwrite)
-    check_pyarrow()
+    require("a table", "pyarrow")
     import pyarrow as pa
 
     columns = series_columns(evaluation)
@@ -75,17 +75,6 @@ def export_series(
                 arrays.insert(0, pa.repeat(printable(recording), len(arrays[0])))
             writer.write_batch(pa.record_batch(arrays, schema=schema))
             progress(f"writing {file_format}", min(begin + _ROWS, total), total)
-
-
-def check_pyarrow() -> None:
-    """Raise OutputError unless tables can be written here."""
-    try:
-        import pyarrow  # noqa: F401
-    except ImportError as error:
-        raise OutputError(
-            f"tables are written by pyarrow, which can't be imported ({error}): "
-            f"{how_to_install('pyarrow')} (series.npz has the same series, for numpy.load())"
-        ) from error
 
 
 def _metadata(**texts: str) -> dict[str, str]:

@@ -44,12 +44,13 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.base.extras import require
     from inverse_dynamics.base.files import check_output_file
     from inverse_dynamics.results.evaluations import CONTENTS, read_evaluation
-    from inverse_dynamics.results.exports import check_pyarrow, export_series
+    from inverse_dynamics.results.exports import export_series
     from inverse_dynamics.verbs.screen import Screen, progress_bar
 
-    check_pyarrow()
+    require("a table", "pyarrow")
     files, overwrite = _files(arguments), arguments.overwrite
     for file in files:  # before the work
         check_output_file(file, overwrite=overwrite, inputs=arguments.runs, results=CONTENTS)
