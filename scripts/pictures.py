@@ -58,6 +58,7 @@ def _frames(html: Path, profile: Path) -> Iterator[Image]:
         driver.get(html.as_uri())
         driver.execute_script(
             "document.querySelector('nav').remove();"
+            "document.documentElement.style.scrollPadding = 0;"
             "document.querySelector('#run-1').scrollIntoView(true);"
         )
         for k in range(FRAMES):

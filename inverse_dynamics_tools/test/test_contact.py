@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from conftest import KDL, fails
 from simulation_arms import pendulum
+from test_report import data_of
 
 from inverse_dynamics import Solver, load_robot
 from inverse_dynamics.contact import (
@@ -329,9 +330,13 @@ def test_the_command_writes_table_figure_and_series(ids, tmp_path, recording, ro
         assert part in out
     assert "thresholds for 1 false alarm per hour" in out
     files = {file.name for file in (tmp_path / "found").iterdir()}
-    assert files == {"contacts.json", "contacts.png", "series.npz"}
+    assert files == {"contacts.json", "contacts.png", "report.html", "series.npz"}
     summary = json.loads((tmp_path / "found" / "contacts.json").read_text())
     assert len(summary["contacts"]) == 1
+    (run,) = data_of((tmp_path / "found" / "report.html").read_text())
+    begin, end = run["contacts"][0]
+    assert (begin, end) == (summary["contacts"][0]["begin"], summary["contacts"][0]["end"])
+    assert run["joints"][0]["band"][0]["half"] == summary["joints"][0]["torques"]
     assert summary["joints"][0]["torques"] > summary["joints"][0]["noise"]
     series = np.load(tmp_path / "found" / "series.npz")
     assert series["torques"].shape == (30_000, 1)

@@ -30,15 +30,8 @@ def html():
     return render_recordings_page("A week", summaries, {"fourth": "<i>gone</i>"}, links)
 
 
-def test_the_page_needs_no_network(html):
-    fetches = re.findall(r"""(?:src|href|action|data|srcset)\s*=\s*["']([^"']*)""", html)
-    links = ["#main", "first/page.html", "second%20%26%20%3Cb%3E/page.html", "third/"]
-    assert [f for f in fetches if not f.startswith("data:")] == links
-    assert "http" not in re.sub(r"<svg.*?</svg>", "", html, flags=re.DOTALL)
-
-
 def test_names_and_messages_are_no_markup(html):
-    assert "second &amp; &lt;b&gt;</a>" in html
+    assert 'href="second%20%26%20%3Cb%3E/page.html">second &amp; &lt;b&gt;</a>' in html
     assert "<dt>fourth</dt><dd>&lt;i&gt;gone&lt;/i&gt;</dd>" in html
 
 

@@ -391,7 +391,7 @@ def test_a_plot_says_that_it_is_cut(opened):
     """
     low, high, cut = opened.execute_script(ask, 0.5)
     assert -low == high == pytest.approx(0.56)
-    assert cut == ", cut: peak 200.000"
+    assert cut == ", cut: peak 200"
     low, high, cut = opened.execute_script(ask, None)
     assert low < -200
     assert cut == ""

@@ -9,11 +9,10 @@ import numpy as np
 
 from inverse_dynamics.base.wording import counted
 from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.plots import save_figure, shade, write_heading, write_legend
+from inverse_dynamics.figures.plots import shade, write_heading, write_legend
 from inverse_dynamics.figures.thinning import line, peaks
 
 if TYPE_CHECKING:
-    from pathlib import Path
     from typing import Any
 
     from matplotlib.axes import Axes
@@ -36,11 +35,6 @@ _UNKNOWN: dict[str, Any] = {
 }
 _MUTED = palette.MUTED
 _MARK = 0.002  # of the time shown: a shorter contact would be no pixel
-
-
-def save_contact_figure(contacts: Contacts, *files: Path) -> None:
-    """Save contact_figure(); formats are those of the suffixes. The same contacts, the same bytes."""
-    save_figure(lambda: contact_figure(contacts), *files)
 
 
 def contact_figure(contacts: Contacts) -> Figure:
@@ -105,11 +99,6 @@ def _write_heading(figure: Figure, contacts: Contacts) -> None:
     if contacts.interruptions:
         handles.append(Patch(label="no estimate", **_UNKNOWN))
     write_legend(figure, handles, 0.012, 0.66)
-
-
-def save_payload_figure(payload: Payload, *files: Path) -> None:
-    """Save payload_figure(); formats are those of the suffixes."""
-    save_figure(lambda: payload_figure(payload), *files)
 
 
 def payload_figure(payload: Payload) -> Figure:

@@ -69,11 +69,6 @@ def save_torque_figure(evaluation: Evaluation, *files: Path) -> None:
     save_figure(lambda: torque_figure(evaluation), *files)
 
 
-def save_comparison_figure(comparison: Comparison, *files: Path) -> None:
-    """Save comparison_figure(); formats are those of the suffixes. The same runs, the same bytes."""
-    save_figure(lambda: comparison_figure(comparison), *files)
-
-
 def save_figure(make: Callable[[], Figure], *files: Path) -> None:
     """Save what `make` draws, in the common style. The same figure, the same bytes."""
     if not files:

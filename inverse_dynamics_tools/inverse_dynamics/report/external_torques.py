@@ -16,7 +16,7 @@ from inverse_dynamics.report.page import Band, ReportSummary, ReportTable, numbe
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.evaluation.contacts import Contacts
+    from inverse_dynamics.evaluation.contacts import Contact, Contacts
     from inverse_dynamics.identification.payload import Payload
 
 
@@ -60,35 +60,30 @@ def render_contacts(contacts: Contacts) -> str:
 def _contacts(contacts: Contacts) -> ReportTable:
     """One row per contact."""
     has_force = contacts.wrenches is not None
-    force = ("mean force [N]", "peak force [N]", "direction", "unseen directions")
+    force = ("mean force [N]", "peak force [N]", "direction", "unseen directions") * has_force
     rows = [
         (
             f"{c.begin:.2f} to {c.end:.2f}",
             c.joint,
             c.torque,
             c.unit,
-            *(
-                (
-                    c.force or math.nan,
-                    c.greatest_force or math.nan,
-                    "  ".join(f"{x:+.1f}" for x in c.force_direction or ()),
-                    str(c.unseen),
-                )
-                if has_force
-                else ()
-            ),
+            *(_force(c) if has_force else ()),
         )
         for c in contacts.contacts
     ]
-    return ReportTable(
-        counted(len(rows), "contact") if rows else "No contacts",
-        ("time [s]", "joint", "torque", "unit", *(force if has_force else ())),
-        rows,
-        note="Torque: the greatest of the joint. Force: at the tip, if nothing else is touched; its "
-        "direction in the axes of the root."
-        if has_force and rows
-        else "",
+    title = counted(len(rows), "contact") if rows else "No contacts"
+    note = (
+        "Torque: the greatest of the joint. Force: at the tip, if nothing else is touched; its direction in "
+        "the axes of the root."
     )
+    headings = ("time [s]", "joint", "torque", "unit", *force)
+    return ReportTable(title, headings, rows, note if has_force and rows else "")
+
+
+def _force(contact: Contact) -> tuple[str | float, ...]:
+    mean, greatest = contact.force or math.nan, contact.greatest_force or math.nan
+    direction = "  ".join(f"{x:+.1f}" for x in contact.force_direction or ())
+    return mean, greatest, direction, str(contact.unseen)
 
 
 def _thresholds(contacts: Contacts) -> ReportTable:

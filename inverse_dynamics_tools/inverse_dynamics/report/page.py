@@ -64,7 +64,7 @@ class ReportRun:
     others: Mapping[str, Floats] = field(default_factory=dict)  # by title: torques to choose, N x n
     others_shown: bool = False  # at first
     error: Floats | None = None  # N x n of the plots on the right; None: computed - measured
-    error_name: str = "computed - measured"
+    error_name: str = "error"
     band_name: str = "95 % band"
     bands: Sequence[Band] = ()  # about computed torques, or, where `error` is given, about zero
     left_out: Sequence[tuple[float, float]] = ()  # [s] from, to: samples that are invalid

@@ -137,7 +137,7 @@ class Plot {
     this.range = range(this.shown(), this.options.band);
     const [low, high] = extremes(this.shown());
     const cut = low < this.range[0] || high > this.range[1];
-    this.cut = cut ? `, cut: peak ${short(Math.max(-low, high), 3)}` : "";
+    this.cut = cut ? `, cut: peak ${Number(Math.max(-low, high).toPrecision(3))}` : "";
   }
 
   // The plot in words, for those who don't see it.
@@ -213,17 +213,19 @@ class Plot {
     context.textBaseline = "alphabetic";
     context.font = "600 12px system-ui, sans-serif";
     context.fillStyle = themeColor("ink");
-    context.fillText(`${this.options.label} [${this.options.unit}]${this.cut}`, kMargin.left, 12);
+    context.fillText(`${this.options.label} [${this.options.unit}]${this.cut}`, kMargin.left, 12, width - kMargin.left);
   }
 
   // Fills the plot between two times, at least `least` pixels wide.
   fillSpan(context, [from, to], view, name, alpha, least = 0) {
     if (to < view.low || from > view.high) return;
-    const left = Math.max(this.x(from, view), kMargin.left);
+    const left = Math.max(this.x(from, view), kMargin.left), bottom = this.height - kMargin.bottom;
     const right = Math.min(Math.max(this.x(to, view), left + least), this.width - kMargin.right);
+    // A few samples that were left out are a mark on the axis: many of them would look like a grid.
+    const top = name === "left-out" && right - left <= least ? bottom - 7 : kMargin.top;
     context.fillStyle = themeColor(name);
     context.globalAlpha = alpha;
-    context.fillRect(left, kMargin.top, right - left, this.height - kMargin.top - kMargin.bottom);
+    context.fillRect(left, top, right - left, bottom - top);
     context.globalAlpha = 1;
   }
 

@@ -70,8 +70,7 @@ def write_payload(
         data, page, *drawn, body = fresh
         write_text(data, json_text(summary(payload)))
         write_text(page, render_payload(payload))
-        if drawn:
-            save_figure(lambda: payload_figure(payload), *drawn)
+        save_figure(lambda: payload_figure(payload), *drawn)
         write_text(body, yaml_text(payload))
 
 
