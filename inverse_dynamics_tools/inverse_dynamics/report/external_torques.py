@@ -40,6 +40,7 @@ def render_contacts(contacts: Contacts) -> str:
         band_name="threshold",
         contacts=[(contact.begin, contact.end) for contact in contacts.contacts],
         left_out=contacts.interruptions,
+        tables=(),
         notes=(),
         cause="",
     )
