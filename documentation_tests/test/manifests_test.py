@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""package.xml of each package: dependencies are rosdep keys and complete, notices of others are there."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+from pages import REPOSITORY
+
+MANIFESTS = sorted(REPOSITORY.glob("*/package.xml"))
+MODELS = sorted(REPOSITORY.glob("inverse_dynamics_robots/models/*.yaml"))
+OWN = {path.parent.name for path in MANIFESTS}
+
+KEYS_OF_ROSDEP = {
+    key
+    for line in Path(__file__).with_name("rosdep_keys.txt").read_text(encoding="utf-8").splitlines()
+    if not line.startswith("#")
+    for key in line.split()
+}
+
+# Packages of CMake whose rosdep key is another, and those that come with CMake or the build.
+KEYS = {
+    "Eigen3": "eigen",
+    "MuJoCo": "mujoco_vendor",
+    "PinocchioHeaders": "pinocchio",
+    "SQLite3": "libsqlite3-dev",
+    "orocos_kdl": "liborocos-kdl-dev",
+    "pybind11": "pybind11-dev",
+}
+WITHOUT_KEY = {"CasADi", "Python3", "Threads"}
+
+
+def dependencies(manifest: Path) -> set[str]:
+    root = ElementTree.parse(manifest).getroot()
+    return {(element.text or "").strip() for element in root if element.tag.endswith("depend")}
+
+
+def found_by_cmake(package: Path) -> set[str]:
+    files = [package / "CMakeLists.txt", package / "test" / "CMakeLists.txt"]
+    text = "".join(file.read_text(encoding="utf-8") for file in files if file.exists())
+    names = set(re.findall(r"find_package\((\w[\w-]*)", text)) - WITHOUT_KEY
+    return {KEYS.get(name, name) for name in names}
+
+
+@pytest.mark.parametrize("manifest", MANIFESTS, ids=lambda path: path.parent.name)
+def test_dependencies_are_keys_of_rosdep(manifest: Path) -> None:
+    assert dependencies(manifest) <= KEYS_OF_ROSDEP | OWN
+
+
+@pytest.mark.parametrize("manifest", MANIFESTS, ids=lambda path: path.parent.name)
+def test_the_manifest_names_what_cmake_looks_for(manifest: Path) -> None:
+    if manifest.parent.name == "benchmarks":
+        pytest.skip("benchmarks aren't released; peers are optional")
+    assert found_by_cmake(manifest.parent) <= dependencies(manifest)
+
+
+@pytest.mark.parametrize("manifest", MANIFESTS, ids=lambda path: path.parent.name)
+def test_notices_of_others_are_named_and_there(manifest: Path) -> None:
+    licences = ElementTree.parse(manifest).getroot().findall("license")
+    assert licences[0].text == "Apache-2.0"
+    named = {licence.attrib["file"] for licence in licences if "file" in licence.attrib}
+    present = {f"LICENSES/{path.name}" for path in manifest.parent.glob("LICENSES/*")}
+    assert named == present
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda path: path.stem)
+def test_the_citation_file_names_the_source_of_each_model(model: Path) -> None:
+    (doi,) = set(re.findall(r"doi (10\.\S+?)[:,.\s]", model.read_text(encoding="utf-8")))
+    assert f"doi: {doi}" in (REPOSITORY / "CITATION.cff").read_text(encoding="utf-8")
