@@ -4,30 +4,29 @@
 #pragma once
 
 #include <geometry_msgs/msg/inertia_stamped.hpp>
-#include <inverse_dynamics_control/payload_ramp.hpp>
-#include <memory>
+#include <inverse_dynamics_control/carried_body.hpp>
+#include <string>
 
 #include "arm.hpp"
-#include "parameter_watch.hpp"
 
 namespace inverse_dynamics_controllers {
 
-/// Gives the solver the body that the parameters `payload.*` or the topic ~/payload say last.
-///
-/// A change takes `payload.ramp_time`, in steps of 10 ms of the node's executor; the control loop
-/// has no part in it. What can't be a body is refused with a reason, and changes nothing.
-class CarriedBody {
+using CarriedBodyOfNode = inverse_dynamics_control::CarriedBody<rclcpp_lifecycle::LifecycleNode,
+                                                                geometry_msgs::msg::InertiaStamped>;
+
+/// Gives the solver the body that the parameters `payload.*` or the topic ~/payload say last; the
+/// control loop has no part in it.
+class CarriedBody : public CarriedBodyOfNode {
  public:
   /// Throws inverse_dynamics_solver::InvalidParameterValueException: the parameters make no
   /// possible body, or the solver can't carry any.
-  explicit CarriedBody(const Setup& setup);
-
- private:
-  // A message that is being received keeps it.
-  std::shared_ptr<inverse_dynamics_control::PayloadRamp> ramp_;
-  std::unique_ptr<ParameterWatch> watch_;
-  rclcpp::Subscription<geometry_msgs::msg::InertiaStamped>::SharedPtr subscription_;
-  rclcpp::TimerBase::SharedPtr timer_;
+  explicit CarriedBody(const Setup& setup)
+      : CarriedBodyOfNode(*setup.node, rclcpp::SystemDefaultsQoS(), rclcpp::SubscriptionOptions(),
+                          [logger = setup.node->get_logger()](const std::string& line) {
+                            RCLCPP_ERROR(logger, "%s", line.c_str());
+                          }) {
+    use(rampOf(setup.arm.solver), setup.tip());
+  }
 };
 
 }  // namespace inverse_dynamics_controllers

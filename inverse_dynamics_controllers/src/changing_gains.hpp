@@ -25,10 +25,10 @@ class ChangingGains {
   /// Throws what `make` throws.
   ChangingGains(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
                 const std::vector<std::string>& names, const Make& make)
-      : initial_(make(valuesOf(*node->get_node_parameters_interface(), names))),
+      : initial_(make(ParameterWatch::valuesOf(*node->get_node_parameters_interface(), names))),
         newest_(std::make_shared<LatestValue<Gains>>(initial_)),
         watch_(
-            node, names, [make](const ParameterValues& values) { make(values); },
+            *node, names, [make](const ParameterValues& values) { make(values); },
             [make, newest = newest_](const ParameterValues& values) {
               newest->back() = make(values);
               newest->publish();

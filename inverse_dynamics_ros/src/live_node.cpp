@@ -40,14 +40,13 @@ class LiveNode::Implementation {
 
   explicit Implementation(LiveNode& node)
       : node_(node),
-        listener_((declareSolverParameters(node),
-                   std::make_shared<live_node::ParamListener>(node.get_node_parameters_interface(),
-                                                              node.get_logger()))),
-        params_(listener_->get_params()),
+        listener_((declareSolverParameters(node), node.get_node_parameters_interface()),
+                  node.get_logger()),
+        params_(listener_.get_params()),
         robot_(givenParameters(node)),
         diagnostics_(node, node.get_node_topics_interface()->resolve_topic_name("joint_states"),
                      {params_.max_age, params_.min_rate}),
-        load_(node, listener_),
+        load_(node, params_),
         payload_(node, params_, [this] { return load_.body(); }) {
     auto& parameters = *node.get_node_parameters_interface();
     inverse_dynamics_solver::rejectUndeclared(parameters);
@@ -256,7 +255,7 @@ class LiveNode::Implementation {
 
   LiveNode& node_;
   std::shared_ptr<void> suggesting_;  // what a misspelt parameter meant
-  std::shared_ptr<live_node::ParamListener> listener_;
+  live_node::ParamListener listener_;
   live_node::Params params_;
   NodeRobot robot_;
   LiveDiagnostics diagnostics_;

@@ -491,7 +491,7 @@ class TestExternalTorques(unittest.TestCase):
         message.inertia.m = -1.0
         self.payload.publish(message)
         proc_output.assertWaitFor(
-            "/touched/touched/payload: ignored: inertia.mass: no possible body", timeout=30
+            "~/payload: ignored: inertia.mass: no possible body", timeout=30
         )
 
     def test_5_count_a_payload_of_parameters(self):
