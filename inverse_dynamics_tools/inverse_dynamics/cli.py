@@ -215,7 +215,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 128 + signal.SIGPIPE
     except Exception as error:
         _say(f"error: {crash_report(error, given)}; {_outcome()}")
-        return 1
+        return 2 if isinstance(error, ModuleNotFoundError) else 1
 
 
 def _run(given: list[str]) -> int:

@@ -352,6 +352,19 @@ def broken(_):
     raise RuntimeError("a fault\nin two lines \x1b[2J")
 
 
+def without_rich(_):
+    raise ModuleNotFoundError("No module named 'rich.text'", name="rich.text")
+
+
+def test_a_python_package_that_is_missing_is_no_bug(ids, monkeypatch):
+    monkeypatch.setattr(robots, "run", without_rich)
+    fails(
+        ids("robots"),
+        "ids: error: ids needs rich: run ./scripts/setup in the workspace, or sudo apt install python3-rich, "
+        "or pip install rich",
+    )
+
+
 def test_an_unexpected_error_is_one_line_with_a_report(ids, tmp_path, monkeypatch):
     monkeypatch.setattr(robots, "run", broken)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))

@@ -7,6 +7,8 @@ import os
 import tempfile
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.base.extras import missing
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -16,9 +18,13 @@ _PACKAGES = ("numpy", "matplotlib", "mujoco", "pyarrow", "rich", "rosbags")
 def crash_report(error: Exception, arguments: Sequence[str]) -> str:
     """Write a report of an error that nobody expected; gives one line that names it.
 
+    A Python package that isn't installed has no report: the line names the command that installs it.
+
     The report holds the traceback, the command line and versions, and nothing of the environment. A
     report that can't be written is left out: never raises.
     """
+    if isinstance(error, ModuleNotFoundError) and error.name:
+        return str(missing("ids", error.name.partition(".")[0]))
     what = str(error).strip().partition("\n")[0]
     line = f"unexpected {type(error).__name__}{what and f': {what}'}"
     try:

@@ -32,6 +32,11 @@ EXTRAS = {
 }
 
 
+# What Debian and Ubuntu have as python3-MODULE, and what PyPI names otherwise.
+_OF_APT = {"argcomplete", "collada", "dask", "distributed", "jinja2", "matplotlib", "numpy", "rich", "scipy", "yaml"}
+_OF_PYPI = {"collada": "pycollada", "yaml": "pyyaml"}
+
+
 class MissingPackageError(UserError):
     """An optional Python package isn't installed."""
 
@@ -55,12 +60,14 @@ def missing(use: str, *modules: str) -> MissingPackageError:
 
 def how_to_install(*modules: str) -> str:
     """The command that installs modules, for whoever has installed this package."""
-    if not set(modules) <= EXTRAS.keys():
-        return f"pip install {' '.join(modules)}"
-    if not installed_by_pip():
-        return "run ./scripts/setup in the workspace"
-    extras = ",".join(sorted({EXTRAS[module] for module in modules}))
-    return f'pip install "inverse-dynamics[{extras}]"'
+    if installed_by_pip() and set(modules) <= EXTRAS.keys():
+        extras = ",".join(sorted({EXTRAS[module] for module in modules}))
+        return f'pip install "inverse-dynamics[{extras}]"'
+    pip = f"pip install {' '.join(_OF_PYPI.get(module, module) for module in modules)}"
+    if installed_by_pip():
+        return pip
+    apt = f"sudo apt install {' '.join(f'python3-{module}' for module in modules)}, or "
+    return f"run ./scripts/setup in the workspace, or {apt if set(modules) <= _OF_APT else ''}{pip}"
 
 
 def installed_by_pip() -> bool:
