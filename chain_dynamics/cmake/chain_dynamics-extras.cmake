@@ -33,8 +33,8 @@ macro(chain_dynamics_add_library)
   chain_dynamics_export_own_symbols(${PROJECT_NAME})
   target_include_directories(${PROJECT_NAME} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
-    $<INSTALL_INTERFACE:include>)
-  install(DIRECTORY include/ DESTINATION include)
+    $<INSTALL_INTERFACE:include/${PROJECT_NAME}>)
+  install(DIRECTORY include/ DESTINATION include/${PROJECT_NAME})
   install(TARGETS ${PROJECT_NAME} EXPORT export_${PROJECT_NAME}
     ARCHIVE DESTINATION lib LIBRARY DESTINATION lib RUNTIME DESTINATION bin)
   ament_export_targets(export_${PROJECT_NAME} HAS_LIBRARY_TARGET)

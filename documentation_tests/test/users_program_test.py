@@ -109,6 +109,29 @@ def test_any_python_may_be_first_on_the_path(tmp_path: Path) -> None:
         run("cmake", "-S", source, "-B", tmp_path / source.name, PATH=path, VIRTUAL_ENV="")
 
 
+def test_headers_of_a_release_in_the_underlay_never_come_first(tmp_path: Path) -> None:
+    """Where packages of the underlay bring its include directory, which holds the release's headers."""
+    for package in ("inverse_dynamics_solver", "kdl_inverse_dynamics_solver"):
+        header = tmp_path / "include" / package / f"{package}.hpp"
+        header.parent.mkdir(parents=True)
+        header.write_text(f'#error "{package} of the release"\n')
+    (tmp_path / "main.cpp").write_text(
+        "#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>\n"
+        "#include <kdl_inverse_dynamics_solver/kdl_inverse_dynamics_solver.hpp>\n"
+    )
+    (tmp_path / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.16)\nproject(overlay LANGUAGES CXX)\n"
+        "find_package(kdl_inverse_dynamics_solver REQUIRED)\n"
+        "add_library(overlay OBJECT main.cpp)\n"
+        "target_include_directories(overlay PRIVATE include)\n"
+        "target_link_libraries(overlay PRIVATE kdl_inverse_dynamics_solver::kdl_inverse_dynamics_solver)\n"
+    )
+    build = tmp_path / "build"
+    underlay = f"{os.environ['AMENT_PREFIX_PATH']}:{tmp_path}"
+    run("cmake", "-S", tmp_path, "-B", build, AMENT_PREFIX_PATH=underlay)
+    run("cmake", "--build", build)
+
+
 def test_a_plugin_of_another_interface_version_is_refused(
     configured: Callable[[str], Path],
 ) -> None:
@@ -118,7 +141,7 @@ def test_a_plugin_of_another_interface_version_is_refused(
     for prefix in PREFIXES:
         for package in ("chain_dynamics", "inverse_dynamics_solver"):
             if (prefix / "include" / package).is_dir():
-                shutil.copytree(prefix / "include" / package, other / "include" / package)
+                shutil.copytree(prefix / "include" / package, other / "include", dirs_exist_ok=True)
     for header in (other / "include").rglob("*.hpp"):
         header.write_text(
             re.sub(r"\binline namespace v\d+\b", "inline namespace v1", header.read_text())

@@ -237,6 +237,13 @@ def evaluate_robot(name: str) -> LaunchDescription:
     )
 
 
+def forward(name: str) -> LaunchDescription:
+    """Launch description of a launch file of this package, with its arguments, under another name."""
+    return LaunchDescription(
+        [IncludeLaunchDescription(PythonLaunchDescriptionSource(launch_file(name)))]
+    )
+
+
 def launch_file(name: str) -> str:
     """Path of a launch file of this package."""
     from ament_index_python.packages import get_package_share_directory

@@ -3,6 +3,7 @@
 
 ros2 launch inverse_dynamics_ros live.launch.py robot:=ur10_real
 ros2 launch inverse_dynamics_ros live.launch.py plugin_name:=package/Class tip:=tool0
+ros2 launch inverse_dynamics_ros live.launch.py robot:=ur10_real namespace:=left
 ros2 launch inverse_dynamics_ros live.launch.py --show-args
 """
 
@@ -32,7 +33,9 @@ RELIABILITIES = {
 
 def nodes(context):
     """The node by itself, or as a component of a container."""
-    topic = text(context, "joint_states")
+    namespace, topic = text(context, "namespace").strip("/"), text(context, "joint_states")
+    if not topic.startswith("/"):
+        topic = "/".join(["", *filter(None, [namespace]), topic])
     parameters = solver_parameters(context) | effort_parameters(context)
     parameters |= {
         "cutoff": number(context, "cutoff"),
@@ -46,7 +49,8 @@ def nodes(context):
         parameters["estimate_payload.noise"] = noise
     common = {
         "package": "inverse_dynamics_ros",
-        "name": "live",
+        "name": text(context, "name"),
+        "namespace": namespace,
         "parameters": [parameters],
         "remappings": [("joint_states", topic)],
     }
@@ -87,7 +91,9 @@ def generate_launch_description():
                 "Standard deviation of measured - computed torques without a load [N m], "
                 "comma-separated, of each joint or one for all; needed to estimate what the tip carries",
             ),
-            argument("joint_states", "Topic of the joint states, in full", "/joint_states"),
+            argument("name", "Name of the node", "live"),
+            argument("namespace", "Namespace of the node and of its topics, one per robot: left"),
+            argument("joint_states", "Topic of the joint states", "joint_states"),
             choice(
                 "reliability", "Quality of service of joint_states", RELIABILITIES, "best_effort"
             ),

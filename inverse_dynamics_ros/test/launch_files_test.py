@@ -55,10 +55,10 @@ def arm_states(joints):
     return messages
 
 
-def launch(*arguments):
-    """`ros2 launch inverse_dynamics_ros ...`, with what it says."""
+def launch(*arguments, package="inverse_dynamics_ros"):
+    """`ros2 launch PACKAGE ...`, with what it says."""
     return subprocess.run(
-        ["ros2", "launch", "inverse_dynamics_ros", *arguments],
+        ["ros2", "launch", package, *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -172,6 +172,23 @@ class TestLaunchFiles(unittest.TestCase):
                 self.assertEqual(topics["/tau"][0][0].name, JOINTS[arm])
                 self.assertEqual(set(topics), {"/tau", "/tau_gt"})
 
+    def test_forward_the_names_of_the_reference_implementation(self):
+        command = [f"input_bag:={FOLDER / 'ur10'}", f"output_bag:={FOLDER / 'forwarded'}"]
+        run = launch(
+            "evaluate_solver_ur10.launch.py", *command, package="ur10_inverse_dynamics_solver"
+        )
+        self.assertEqual(run.returncode, 0, run.stdout)
+        self.assertEqual(len(read_bag(FOLDER / "forwarded")["/torques"]), 400)
+        run = subprocess.run(
+            ["ros2", "run", "inverse_dynamics_solver", "evaluate_solver"],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("input_bag", run.stdout + run.stderr)
+
     def test_run_the_live_node(self):
         command = ["ros2", "launch", "inverse_dynamics_ros", "live.launch.py"]
         command += [
@@ -179,6 +196,8 @@ class TestLaunchFiles(unittest.TestCase):
             f"robot_description:={PENDULUM}",
             "reliability:=reliable",
             "external_torques:=true",
+            "name:=arm",
+            "namespace:=left",
         ]
         process = subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
@@ -190,6 +209,7 @@ class TestLaunchFiles(unittest.TestCase):
                 if "1 joints: swing" in line:
                     break
             self.assertIn("1 joints: swing", "".join(lines))
+            self.assertIn("[left.arm]: ", "".join(lines))
             self.assertIn("external torques: momentum observer; wrench: none", "".join(lines))
         finally:
             process.send_signal(2)

@@ -490,9 +490,7 @@ class TestExternalTorques(unittest.TestCase):
         self.assertAlmostEqual(self.last(), 0.0, delta=0.05)
         message.inertia.m = -1.0
         self.payload.publish(message)
-        proc_output.assertWaitFor(
-            "~/payload: ignored: inertia.mass: no possible body", timeout=30
-        )
+        proc_output.assertWaitFor("~/payload: ignored: inertia.mass: no possible body", timeout=30)
 
     def test_5_count_a_payload_of_parameters(self):
         self.assertFalse(self.set_parameter("payload.mass", -1.0).successful)

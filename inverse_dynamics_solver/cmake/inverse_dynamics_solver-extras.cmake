@@ -39,7 +39,11 @@ macro(inverse_dynamics_solver_add_plugin)
   install(TARGETS ${PROJECT_NAME} EXPORT export_${PROJECT_NAME}
     ARCHIVE DESTINATION lib LIBRARY DESTINATION lib RUNTIME DESTINATION bin)
   install(TARGETS ${PROJECT_NAME}_plugin LIBRARY DESTINATION lib RUNTIME DESTINATION bin)
-  list(INSERT ${PROJECT_NAME}_CONFIG_EXTRAS 0 ${chain_dynamics_DIR}/ament_python-extras.cmake)
+  list(INSERT ${PROJECT_NAME}_CONFIG_EXTRAS 0 ${chain_dynamics_DIR}/ament_python-extras.cmake
+    ${chain_dynamics_DIR}/ament_headers-extras.cmake)
+  if(IS_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/launch)
+    install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})
+  endif()
   ament_export_targets(export_${PROJECT_NAME} HAS_LIBRARY_TARGET)
   ament_export_dependencies(${_solver_DEPENDENCIES})
 endmacro()

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: Apache-2.0
+
+# The reference implementation is released under some names of this workspace. Where such a release lies in an underlay,
+# a directory that other packages bring (/opt/ros/DISTRO/include) may hold its headers: then those of this package are
+# put before all directories of the targets that are made after find_package().
+get_filename_component(_share "${CMAKE_CURRENT_LIST_DIR}" DIRECTORY)
+get_filename_component(_package "${_share}" NAME)
+get_filename_component(_own_headers "${_share}/../../include/${_package}" ABSOLUTE)
+string(REPLACE ":" ";" _prefixes "$ENV{AMENT_PREFIX_PATH}:$ENV{CMAKE_PREFIX_PATH}")
+foreach(_prefix IN LISTS CMAKE_PREFIX_PATH _prefixes)
+  if(EXISTS "${_prefix}/include/${_package}/${_package}.hpp" OR EXISTS "${_prefix}/include/${_package}/${_package}.h")
+    message(NOTICE "${_prefix}/include has headers of another ${_package}: ${_own_headers} comes before it")
+    # Directories of imported targets count as those of the system, which come last.
+    set(CMAKE_NO_SYSTEM_FROM_IMPORTED ON)
+    include_directories(BEFORE "${_own_headers}")
+    break()
+  endif()
+endforeach()
