@@ -21,11 +21,12 @@ using inverse_dynamics_solver::ParameterUninitializedException;
 namespace {
 
 // The solver's names in the hardware: the given ones, which must be as many; none: its own.
-std::vector<std::string> hardwareNames(const std::vector<std::string>& given,
+std::vector<std::string> hardwareNames(const std::string& parameter,
+                                       const std::vector<std::string>& given,
                                        const std::vector<std::string>& solvers) {
   if (given.empty() || given.size() == solvers.size()) return given.empty() ? solvers : given;
   throw InvalidParameterValueException(
-      errorText("parameter 'joints'", "wrong number of names",
+      errorText("parameter '" + parameter + "'", "wrong number of names",
                 std::to_string(solvers.size()) + ", in the order of " + joined(solvers),
                 std::to_string(given.size()) + " (" + joined(given) + ")", "correct them"));
 }
@@ -91,11 +92,15 @@ Setup ArmSource::setup(const std::string& managers_description, unsigned update_
   for (const std::string& warning : solver->warnings()) {
     RCLCPP_WARN(node_->get_logger(), "%s: %s", parameters.plugin_name.c_str(), warning.c_str());
   }
-  const std::vector<std::string> joints = hardwareNames(parameters.joints, solver->jointNames());
+  const std::vector<std::string> joints =
+      hardwareNames("joints", parameters.joints, solver->jointNames());
+  const LawParameters law = law_ ? law_->get_params() : LawParameters();
+  std::vector<std::string> commands = hardwareNames("command_joints", law.command_joints, joints);
+  for (std::string& command : commands) command += "/" + law.command_interface;
   return {node_,
           parameters,
-          law_ ? law_->get_params() : LawParameters(),
-          {solver, joints, urdfLimits(description, joints)},
+          law,
+          {solver, joints, std::move(commands), urdfLimits(description, joints)},
           update_rate};
 }
 

@@ -25,7 +25,8 @@ using LawParameters = law_parameters::Params;
 /// A robot arm as its controller knows it.
 struct Arm {
   std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver> solver;
-  std::vector<std::string> joints;  ///< names of the hardware, in the order of the chain
+  std::vector<std::string> joints;    ///< names of the hardware, in the order of the chain
+  std::vector<std::string> commands;  ///< full names of the command interfaces, in the same order
   UrdfLimits limits;
 };
 

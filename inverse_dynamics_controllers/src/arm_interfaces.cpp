@@ -36,7 +36,7 @@ std::size_t find(const Interfaces& interfaces, const std::string& name, const ch
   throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
       kind, "missing", name, std::to_string(interfaces.size()) + " others",
       "let the hardware component export it (<ros2_control> of the robot description), or correct "
-      "the parameter 'joints'"));
+      "the parameters 'joints', 'command_joints' and 'command_interface'"));
 }
 
 template <class Interfaces>
@@ -49,7 +49,8 @@ std::vector<std::size_t> find(const Interfaces& interfaces, const std::vector<st
 
 }  // namespace
 
-ArmInterfaces::ArmInterfaces(std::vector<std::string> joints) : joints_(std::move(joints)) {}
+ArmInterfaces::ArmInterfaces(std::vector<std::string> joints, std::vector<std::string> commands)
+    : joints_(std::move(joints)), commands_(std::move(commands)) {}
 
 controller_interface::InterfaceConfiguration ArmInterfaces::states() const {
   return {kIndividual, namesOf(joints_, {HW_IF_POSITION, HW_IF_VELOCITY})};
@@ -60,13 +61,13 @@ controller_interface::InterfaceConfiguration ArmInterfaces::statesWithEffort() c
 }
 
 controller_interface::InterfaceConfiguration ArmInterfaces::commands() const {
-  return {kIndividual, namesOf(joints_, {HW_IF_EFFORT})};
+  return {kIndividual, commands_};
 }
 
 void ArmInterfaces::bind(const StateInterfaces& states, const CommandInterfaces& commands) {
   positions_ = find(states, namesOf(joints_, {HW_IF_POSITION}), kState);
   velocities_ = find(states, namesOf(joints_, {HW_IF_VELOCITY}), kState);
-  efforts_ = find(commands, namesOf(joints_, {HW_IF_EFFORT}), "command interface");
+  efforts_ = find(commands, commands_, "command interface");
 }
 
 void ArmInterfaces::bindMeasured(const StateInterfaces& states) {

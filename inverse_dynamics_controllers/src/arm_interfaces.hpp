@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A controller's interfaces to the hardware, one position, velocity and effort per joint.
+/// A controller's interfaces to the hardware, a position, a velocity and an effort per joint.
 ///
 /// What measures only takes the efforts as states: statesWithEffort(), bindMeasured(), readEffort().
 #pragma once
@@ -19,7 +19,9 @@ using StateInterfaces = std::vector<hardware_interface::LoanedStateInterface>;
 /// Finds, reads and writes the interfaces of an arm's joints.
 class ArmInterfaces {
  public:
-  explicit ArmInterfaces(std::vector<std::string> joints = {});
+  /// @param joints    of the states.
+  /// @param commands  full names of the command interfaces, as many; none: nothing is commanded.
+  explicit ArmInterfaces(std::vector<std::string> joints, std::vector<std::string> commands = {});
 
   const std::vector<std::string>& joints() const noexcept { return joints_; }
 
@@ -29,7 +31,6 @@ class ArmInterfaces {
   /// The same, and `joint/effort` of all joints.
   controller_interface::InterfaceConfiguration statesWithEffort() const;
 
-  /// `joint/effort` of all joints.
   controller_interface::InterfaceConfiguration commands() const;
 
   /// Finds the interfaces among those loaned, whatever their order.
@@ -58,7 +59,7 @@ class ArmInterfaces {
   bool write(const Eigen::VectorXd& tau, CommandInterfaces& commands) const noexcept;
 
  private:
-  std::vector<std::string> joints_;
+  std::vector<std::string> joints_, commands_;
   std::vector<std::size_t> positions_, velocities_, efforts_;  // where they are
   std::vector<std::size_t> measured_efforts_;
 };

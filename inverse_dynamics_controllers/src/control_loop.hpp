@@ -30,7 +30,7 @@ namespace inverse_dynamics_controllers {
 class ControlLoop {
  public:
   explicit ControlLoop(const Setup& setup)
-      : interfaces_(setup.arm.joints),
+      : interfaces_(setup.arm.joints, setup.arm.commands),
         state_(setup.arm.solver->jointCount()),
         tau_(Eigen::VectorXd::Zero(state_.q.size())),
         fault_(setup.parameters.tolerated_fault_time),
@@ -98,6 +98,15 @@ class ControlLoop {
   void publish(const rclcpp::Time& time,
                const inverse_dynamics_control::Reference* reference) noexcept {
     publisher_.note(time, state_, reference, tau_);
+  }
+
+  /// The law's safe torque: what a controller leaves behind that fails, or is shut down while active.
+  void leave(inverse_dynamics_control::ControlLaw& law, const StateInterfaces& states,
+             CommandInterfaces& commands) noexcept {
+    if (states.empty() || commands.empty()) return;  // not active
+    interfaces_.read(states, state_);
+    law.hold(state_, 0.0, tau_);
+    interfaces_.write(tau_, commands);
   }
 
   /// Zero effort: what a controller leaves behind when it is deactivated.

@@ -2,6 +2,9 @@
 /// @file
 /// A value handed from one thread to another, the newest only, without a lock.
 ///
+/// RealtimeThreadSafeBox of realtime_tools tries a lock instead: while the other thread holds it, a
+/// cycle keeps an old value, or loses one to publish.
+///
 ///     LatestValue<std::vector<double>> mailbox(std::vector<double>(6));
 ///     mailbox.back().assign(...); mailbox.publish();                      // one thread
 ///     if (const auto* value = mailbox.take()) use(*value);                // the other one

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "state_publisher.hpp"
 
-#include <chrono>
 #include <control_msgs/msg/joint_trajectory_controller_state.hpp>
+#include <rclcpp/create_timer.hpp>
 #include <utility>
 
 #include "latest_value.hpp"
@@ -72,8 +72,8 @@ StatePublisher::StatePublisher(const std::shared_ptr<rclcpp_lifecycle::Lifecycle
                            types, std::move(message),
                            node->create_publisher<JointTrajectoryControllerState>(
                                "~/controller_state", rclcpp::SystemDefaultsQoS())});
-  timer_ = node->create_wall_timer(std::chrono::duration<double>(1.0 / rate),
-                                   [outbox = outbox_] { outbox->publish(); });
+  timer_ = rclcpp::create_timer(node, node->get_clock(), rclcpp::Duration::from_seconds(1.0 / rate),
+                                [outbox = outbox_] { outbox->publish(); });
 }
 
 void StatePublisher::note(const rclcpp::Time& time, const JointState& state,

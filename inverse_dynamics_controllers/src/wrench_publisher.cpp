@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrench_publisher.hpp"
 
-#include <chrono>
 #include <geometry_msgs/msg/wrench_stamped.hpp>
+#include <rclcpp/create_timer.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
 #include <std_msgs/msg/bool.hpp>
 #include <utility>
@@ -80,8 +80,8 @@ WrenchPublisher::WrenchPublisher(const std::shared_ptr<rclcpp_lifecycle::Lifecyc
                            node->create_publisher<WrenchStamped>("~/wrench", qos),
                            node->create_publisher<JointState>("~/external_torques", qos),
                            contacts ? node->create_publisher<Bool>("~/contact", qos) : nullptr});
-  timer_ = node->create_wall_timer(std::chrono::duration<double>(1.0 / rate),
-                                   [outbox = outbox_] { outbox->publish(); });
+  timer_ = rclcpp::create_timer(node, node->get_clock(), rclcpp::Duration::from_seconds(1.0 / rate),
+                                [outbox = outbox_] { outbox->publish(); });
 }
 
 void WrenchPublisher::note(const rclcpp::Time& time, const ContactSensing& sensing) noexcept {

@@ -133,5 +133,43 @@ TEST_F(GravityCompensationControllerTest, OtherNamesOfTheHardwareAreTakenInTheOr
   EXPECT_LT((hardware.effort() - expected).norm(), kRounding);
 }
 
+TEST_F(GravityCompensationControllerTest, CommandsMayHaveOtherNamesThanStates) {
+  Parameters parameters = good();
+  std::vector<std::string> names;
+  for (const std::string& joint : ur10Joints()) names.push_back("admittance/" + joint);
+  parameters["command_joints"] = rclcpp::ParameterValue(names);
+  parameters["command_interface"] = rclcpp::ParameterValue("torque");
+  ASSERT_TRUE(configure(parameters)) << log.text();
+  const auto commands = controller.command_interface_configuration().names;
+  ASSERT_EQ(commands.size(), 6u);
+  EXPECT_EQ(commands[2], "admittance/elbow_joint/torque");
+  EXPECT_EQ(controller.state_interface_configuration().names[0], "shoulder_pan_joint/position");
+  EXPECT_FALSE(activate());
+  EXPECT_TRUE(
+      log.has("ERROR: command interface: missing: expected "
+              "admittance/shoulder_pan_joint/torque"))
+      << log.text();
+}
+
+TEST_F(GravityCompensationControllerTest, AsManyCommandsAsJoints) {
+  Parameters parameters = good();
+  parameters["command_joints"] = rclcpp::ParameterValue(std::vector<std::string>{"elbow_joint"});
+  EXPECT_FALSE(configure(parameters));
+  EXPECT_TRUE(log.has("ERROR: parameter 'command_joints': wrong number of names: expected 6"))
+      << log.text();
+}
+
+TEST_F(GravityCompensationControllerTest, AnErrorAndAShutdownLeaveTheSafeTorque) {
+  ASSERT_TRUE(configure(good()) && activate()) << log.text();
+  const Eigen::VectorXd safe = solver()->getGravityVector(q) - 4.0 * qd;
+  for (const auto end :
+       {&GravityCompensationController::on_error, &GravityCompensationController::on_shutdown}) {
+    std::fill(hardware.tau.begin(), hardware.tau.end(), 0.0);
+    EXPECT_EQ((controller.*end)(controller.get_lifecycle_state()),
+              controller_interface::CallbackReturn::SUCCESS);
+    EXPECT_LT((hardware.effort() - safe).norm(), kRounding);
+  }
+}
+
 }  // namespace
 }  // namespace inverse_dynamics_controllers

@@ -1,7 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 
-# MuJoCo's C library, of an installation or of the Python package `mujoco`: target MuJoCo::mujoco.
-# Where neither is found by itself: -DMuJoCo_ROOT=<directory with include/mujoco/mujoco.h>.
+# MuJoCo's C library: target MuJoCo::mujoco. Of the ROS package mujoco_vendor, of an installation, or of the Python
+# package `mujoco`. Where none is found by itself: -DMuJoCo_ROOT=<directory with include/mujoco/mujoco.h>.
+#
+# MuJoCo_wheel: the library is a wheel's, to be installed beside what needs it.
+
+find_package(mujoco_vendor QUIET)
+if(TARGET mujoco::mujoco)
+  set(MuJoCo_FOUND TRUE)
+  if(NOT TARGET MuJoCo::mujoco)
+    add_library(MuJoCo::mujoco INTERFACE IMPORTED)
+    set_target_properties(MuJoCo::mujoco PROPERTIES INTERFACE_LINK_LIBRARIES mujoco::mujoco)
+  endif()
+  return()
+endif()
 
 if(Python3_EXECUTABLE)
   set(MuJoCo_python ${Python3_EXECUTABLE})
@@ -21,6 +33,7 @@ file(GLOB MuJoCo_versioned "${MuJoCo_package}/libmujoco.so.*" "${MuJoCo_ROOT}/li
 find_library(MuJoCo_LIBRARY NAMES mujoco HINTS "${MuJoCo_package}")
 if(NOT MuJoCo_LIBRARY AND MuJoCo_versioned)
   list(GET MuJoCo_versioned 0 MuJoCo_LIBRARY)
+  set(MuJoCo_wheel ON)
 endif()
 
 include(FindPackageHandleStandardArgs)

@@ -9,7 +9,6 @@
 #include <rclcpp/logging.hpp>
 #include <stdexcept>
 
-#include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
 
 namespace inverse_dynamics_simulation {
 
@@ -20,7 +19,6 @@ using hardware_interface::HW_IF_EFFORT;
 using hardware_interface::HW_IF_POSITION;
 using hardware_interface::HW_IF_VELOCITY;
 using hardware_interface::return_type;
-using inverse_dynamics_controllers::referenceInterface;
 
 namespace {
 
@@ -105,9 +103,9 @@ CallbackReturn SimulatedArm::initialize(const hardware_interface::HardwareInfo& 
   return CallbackReturn::SUCCESS;
 }
 
-std::vector<hardware_interface::StateInterface> SimulatedArm::export_state_interfaces() {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdeprecated-declarations"  // from jazzy on, but still there
+std::vector<hardware_interface::StateInterface> SimulatedArm::export_state_interfaces() {
   std::vector<hardware_interface::StateInterface> interfaces;
   for (Joint& joint : joints_) {
     interfaces.emplace_back(joint.name, HW_IF_POSITION, &joint.position);
@@ -116,16 +114,16 @@ std::vector<hardware_interface::StateInterface> SimulatedArm::export_state_inter
     interfaces.emplace_back(joint.name, HW_IF_EFFORT, &joint.effort);
   }
   return interfaces;
-#pragma GCC diagnostic pop
 }
 
 std::vector<hardware_interface::CommandInterface> SimulatedArm::export_command_interfaces() {
   std::vector<hardware_interface::CommandInterface> interfaces;
   for (Joint& joint : joints_) {
-    interfaces.push_back(referenceInterface(joint.name, HW_IF_EFFORT, &joint.command));
+    interfaces.emplace_back(joint.name, HW_IF_EFFORT, &joint.command);
   }
   return interfaces;
 }
+#pragma GCC diagnostic pop
 
 CallbackReturn SimulatedArm::on_activate(const rclcpp_lifecycle::State&) {
   for (Joint& joint : joints_) joint.command = 0.0;

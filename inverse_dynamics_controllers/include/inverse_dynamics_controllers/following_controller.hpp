@@ -41,6 +41,8 @@ class FollowingController : public ChainableController {
   controller_interface::CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override;
   controller_interface::CallbackReturn on_deactivate(const rclcpp_lifecycle::State& state) override;
   controller_interface::CallbackReturn on_cleanup(const rclcpp_lifecycle::State& state) override;
+  controller_interface::CallbackReturn on_error(const rclcpp_lifecycle::State& state) override;
+  controller_interface::CallbackReturn on_shutdown(const rclcpp_lifecycle::State& state) override;
 
  protected:
   /// Declares the parameters that the controller has of its own.

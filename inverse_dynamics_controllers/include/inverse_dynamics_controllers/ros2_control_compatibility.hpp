@@ -54,6 +54,17 @@ struct SharedStates : controller_interface::ChainableControllerInterface {
 };
 constexpr bool kHasSharedStates = decltype(SharedStates::find<SharedStates>(0))::value;
 
+/// Options with services that get and set the levels of loggers (jazzy).
+template <class Options>
+auto withLoggerService(Options options)
+    -> std::decay_t<decltype(options.enable_logger_service(true))> {
+  return options.enable_logger_service(true);
+}
+template <class Options, class... None>
+Options withLoggerService(Options options, None...) {
+  return options;
+}
+
 }  // namespace detail
 
 /// Value of an interface, if it can be read: it has a value, which isn't being written. Real time:
@@ -112,7 +123,9 @@ class Strict : public Base {
 
   // NOLINTBEGIN(readability-identifier-naming, modernize-use-override): one overrides, one doesn't
   /// From jazzy on.
-  rclcpp::NodeOptions define_custom_node_options() const { return rclcpp::NodeOptions(); }
+  rclcpp::NodeOptions define_custom_node_options() const {
+    return detail::withLoggerService(rclcpp::NodeOptions());
+  }
 
   /// In humble, whose manager's options allow undeclared parameters; elsewhere never called.
   controller_interface::return_type init(const std::string& controller,
@@ -125,16 +138,6 @@ class Strict : public Base {
   }
   // NOLINTEND(readability-identifier-naming, modernize-use-override)
 };
-
-/// An interface of a controller to the one before it, on a number that the controller keeps.
-inline hardware_interface::CommandInterface referenceInterface(const std::string& controller,
-                                                               const std::string& name,
-                                                               double* value) {
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wdeprecated-declarations"  // from jazzy on, but still there
-  return {controller, name, value};
-#pragma GCC diagnostic pop
-}
 
 /// Base class of the chainable controllers, the same in all releases.
 ///
@@ -181,15 +184,7 @@ class ChainableController : public Strict<controller_interface::ChainableControl
   }
 
   std::vector<hardware_interface::CommandInterface> on_export_reference_interfaces() {
-    std::vector<hardware_interface::CommandInterface> interfaces;
-    if (detail::kHasSharedReferences) return interfaces;
-    const std::vector<std::string> names = referenceNames();
-    reference_interfaces_.assign(names.size(), std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      interfaces.push_back(
-          referenceInterface(get_node()->get_name(), names[k], &reference_interfaces_[k]));
-    }
-    return interfaces;
+    return ownReferences<hardware_interface::CommandInterface>();
   }
   std::vector<std::shared_ptr<hardware_interface::CommandInterface>>
   on_export_reference_interfaces_list() {
@@ -201,6 +196,20 @@ class ChainableController : public Strict<controller_interface::ChainableControl
  private:
   std::size_t size() const noexcept {
     return shared_.empty() ? reference_interfaces_.size() : shared_.size();
+  }
+
+  // On numbers of the controller.
+  template <class Interface>
+  std::vector<Interface> ownReferences() {
+    std::vector<Interface> references;
+    if constexpr (!detail::kHasSharedReferences) {
+      const std::vector<std::string> names = referenceNames();
+      reference_interfaces_.assign(names.size(), std::numeric_limits<double>::quiet_NaN());
+      for (std::size_t k = 0; k < names.size(); ++k) {
+        references.emplace_back(get_node()->get_name(), names[k], &reference_interfaces_[k]);
+      }
+    }
+    return references;
   }
 
   template <class Interface>

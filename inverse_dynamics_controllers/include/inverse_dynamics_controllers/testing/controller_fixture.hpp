@@ -84,11 +84,10 @@ class FakeHardware {
         measured_tau(joints.size(), 0.0),
         tau(joints.size(), 77.0) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
-      addState(joints[j], "position", &q[j]);
-      addState(joints[j], "velocity", &qd[j]);
-      addState(joints[j], "effort", &measured_tau[j]);
-      commands_.push_back(std::make_shared<hardware_interface::CommandInterface>(
-          referenceInterface(joints[j], "effort", &tau[j])));
+      add(states_, joints[j], "position", &q[j]);
+      add(states_, joints[j], "velocity", &qd[j]);
+      add(states_, joints[j], "effort", &measured_tau[j]);
+      add(commands_, joints[j], "effort", &tau[j]);
     }
   }
 
@@ -115,11 +114,12 @@ class FakeHardware {
   std::vector<double> q, qd, measured_tau, tau;
 
  private:
-  void addState(const std::string& joint, const std::string& interface, double* value) {
+  template <class Interface>
+  static void add(std::vector<std::shared_ptr<Interface>>& interfaces, const std::string& joint,
+                  const std::string& name, double* value) {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdeprecated-declarations"  // from jazzy on, but still there
-    states_.push_back(
-        std::make_shared<hardware_interface::StateInterface>(joint, interface, value));
+    interfaces.push_back(std::make_shared<Interface>(joint, name, value));
 #pragma GCC diagnostic pop
   }
 
