@@ -9,7 +9,6 @@
 #include <rclcpp/logging.hpp>
 #include <stdexcept>
 
-
 namespace inverse_dynamics_simulation {
 
 using chain_dynamics::joined;

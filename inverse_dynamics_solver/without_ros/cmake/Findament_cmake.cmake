@@ -31,7 +31,7 @@ endfunction()
 
 function(ament_package)
   cmake_parse_arguments(ARG "" "" "CONFIG_EXTRAS" ${ARGN})
-  list(FILTER ARG_CONFIG_EXTRAS EXCLUDE REGEX "ament_python-extras.cmake$") # of use to ament only
+  list(FILTER ARG_CONFIG_EXTRAS EXCLUDE REGEX "ament_(headers|python)-extras.cmake$") # of use to ament only
   list(TRANSFORM ARG_CONFIG_EXTRAS REPLACE ".*/" "" OUTPUT_VARIABLE names)
   set(config ${PROJECT_NAME}Config.cmake)
   inverse_dynamics_index_entry(packages "")
