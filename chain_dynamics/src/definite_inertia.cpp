@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "chain_dynamics/inertia_matrix.hpp"
+#include "chain_dynamics/model.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -171,6 +172,9 @@ bool inertiaIsDefinite(const Chain& chain) {
   }
   return true;
 }
+
+// Here, as the interface of solvers needs nothing else of a model.
+bool Model::inertiaIsPhysical() const { return row_parameters.empty() && inertiaIsDefinite(chain); }
 
 }  // namespace v2
 }  // namespace chain_dynamics

@@ -16,7 +16,6 @@
 #include "chain_dynamics/gravity_vector.hpp"
 #include "chain_dynamics/parameter_sets.hpp"
 #include "chain_dynamics/torque_derivatives.hpp"
-#include "definite_inertia.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -103,8 +102,6 @@ void checkExperience(const Model& model) {
 }
 
 }  // namespace
-
-bool Model::inertiaIsPhysical() const { return row_parameters.empty() && inertiaIsDefinite(chain); }
 
 void checkModel(const Model& model) {
   checkParameterSets(model.chain, setsOf(model));

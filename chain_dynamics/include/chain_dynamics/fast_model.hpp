@@ -15,6 +15,10 @@
 
 #pragma once
 
+#ifdef CHAIN_DYNAMICS_WITHOUT_MODELS
+#error "chain_dynamics was built without models: build it with -DCHAIN_DYNAMICS_MODELS=ON"
+#endif
+
 #include <cstddef>
 #include <memory>
 #include <string>
