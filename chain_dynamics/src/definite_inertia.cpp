@@ -173,7 +173,6 @@ bool inertiaIsDefinite(const Chain& chain) {
   return true;
 }
 
-// Here, as the interface of solvers needs nothing else of a model.
 bool Model::inertiaIsPhysical() const { return row_parameters.empty() && inertiaIsDefinite(chain); }
 
 }  // namespace v2
