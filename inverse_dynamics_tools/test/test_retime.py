@@ -5,11 +5,13 @@ import os
 import numpy as np
 import pytest
 from conftest import JOINTS
+from test_report import browser, complaints, wait_until
 
 from inverse_dynamics import Solver, cli, load_robot, retime, trajectory_torques
 from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retime_path
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.retiming import MotionEnergy
+from inverse_dynamics.report.retimed import spans, write_retimed_page
 from inverse_dynamics.robot.robots import with_changes
 
 WAYPOINTS = np.array(
@@ -138,6 +140,7 @@ def test_command_writes_a_trajectory_that_ids_torques_confirms(tmp_path, capsys)
     assert {path.name for path in out.iterdir()} == {
         "fast.db3",
         "metadata.yaml",
+        "report.html",
         "retime.json",
         "torques.png",
         "trajectory.csv",
@@ -152,6 +155,37 @@ def test_command_writes_a_trajectory_that_ids_torques_confirms(tmp_path, capsys)
         [abs(joint["peak"]) for joint in numbers["joints"]]
     )
     assert cli.main(["retime", str(way), *options]) == 0  # replaces its own earlier result
+
+
+def test_spans_reach_half_way_to_their_neighbours():
+    place = np.array([0.0, 1.0, 2.0, 4.0])
+    assert spans(place, np.array([True, False, True, True])) == [(0.0, 0.5), (1.5, 4.0)]
+    assert spans(place, np.zeros(4, dtype=bool)) == []
+
+
+def test_page_races_both_motions(fastest, tmp_path):
+    page = tmp_path / "report.html"
+    write_retimed_page(page, fastest)
+    assert f"{fastest.seconds_saved:.3f} s" in page.read_text()
+    with browser(tmp_path / "profile") as driver:
+        driver.get(page.as_uri())
+        ask = driver.execute_script
+        pictures = (
+            "return [...document.querySelectorAll('.robot canvas')].map((c) => c.toDataURL());"
+        )
+        start = ask(pictures)
+        assert start[0] == start[1]
+        for t, same in ((0.5 * fastest.duration, False), (10.0, True)):
+            ask(f"race.seek({t});")
+            first, second = ask(pictures)
+            assert first != start[0]
+            assert (first == second) is same
+        ask("race.speed.value = '0.1'; document.querySelector('.play').click();")  # from the start
+        wait_until(lambda: ask("return race.now < race.end && race.now > 0;"), "it plays")
+        ask("race.speed.value = '1';")
+        wait_until(lambda: ask("return race.button.textContent === 'Play';"), "it ends")
+        assert ask("return race.now;") == pytest.approx(fastest.by_acceleration.duration, rel=1e-5)
+        assert complaints(driver) == []
 
 
 @pytest.mark.parametrize(

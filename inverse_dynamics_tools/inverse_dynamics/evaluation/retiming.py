@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from inverse_dynamics._core import Solver, TimedPath
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.arrays import Floats, Integers
 
 _UNLIMITED = 1e6  # N m: of motions that only accelerations limit
 _AT_LIMIT = 0.99  # of a limit: the joint is said to be at it
@@ -102,6 +102,12 @@ class Retimed:
         """(n,) share of the time that each joint's torque is at its limit."""
         share: Floats = (np.abs(self.use) > _AT_LIMIT).mean(axis=0)
         return share
+
+    @property
+    def limiting(self) -> Integers:
+        """(N,) the joint whose torque is at its limit, of several the one nearest to it; -1: none is."""
+        use = np.abs(self.use)
+        return np.where(use.max(axis=1) > _AT_LIMIT, use.argmax(axis=1), -1)
 
     def plot(self) -> Any:
         """The figure of retime_figure(), of matplotlib."""

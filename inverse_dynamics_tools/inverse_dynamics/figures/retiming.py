@@ -18,7 +18,16 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.evaluation.retiming import Retimed
 
-_JOINTS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#882255", "#7A4A12")
+JOINT_COLORS = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+    "#882255",
+    "#7A4A12",
+)
 
 
 def save_retime_figure(result: Retimed, *files: Path) -> None:
@@ -90,12 +99,10 @@ def _draw_strip(axis: Axes, result: Retimed) -> None:
     from matplotlib.patches import Patch
 
     place = np.interp(result.time, result.timed.time, result.timed.s)
-    nearest = np.abs(result.use).argmax(axis=1)
-    at_limit = np.abs(result.use).max(axis=1) > 0.99
     shown = []
     for j, joint in enumerate(result.joint_names):
-        color = _JOINTS[j % len(_JOINTS)]
-        if (here := at_limit & (nearest == j)).any():
+        color = JOINT_COLORS[j % len(JOINT_COLORS)]
+        if (here := result.limiting == j).any():
             axis.fill_between(place, 0, 1, where=here, color=color, linewidth=0, step="mid")
             shown.append(Patch(color=color, label=joint))
     axis.set_xlim(place[0], place[-1])

@@ -4,23 +4,6 @@
 // Data of the page: <script type="application/json" id="runs">; arrays are base64 of little-endian float32.
 "use strict";
 
-function decode(base64) {
-  return new Float32Array(bytesOf(base64));
-}
-
-// Rows of a matrix stored joint by joint.
-function rows(base64, count) {
-  const all = decode(base64), length = all.length / count;
-  return Array.from({length: count}, (_, j) => all.subarray(j * length, (j + 1) * length));
-}
-
-// Joint positions at time t, linear between samples.
-function positionsAt(time, q, t) {
-  const i = indexAt(time, t), next = Math.min(i + 1, time.length - 1);
-  const share = next > i ? Math.min(1, Math.max(0, (t - time[i]) / (time[next] - time[i]))) : 0;
-  return q.map((row) => row[i] + share * (row[next] - row[i]));
-}
-
 class Player {
   constructor(section, run) {
     this.section = section;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of a timed path: a recording of trajectory_msgs/JointTrajectory with efforts, a table, numbers, a figure."""
+"""Files of a timed path: a JointTrajectory with efforts as a recording and a table, numbers, a figure, a page."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ from inverse_dynamics.data.joint_trajectories import MESSAGE_TYPE, typestore
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.figures.plots import check_formats
 from inverse_dynamics.figures.retiming import save_retime_figure
+from inverse_dynamics.report.retimed import write_retimed_page
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -32,7 +33,10 @@ if TYPE_CHECKING:
 MARK = "retime.json"
 TABLE = "trajectory.csv"
 TOPIC = "/joint_trajectory"
-CONTENTS = Contents(MARK, (MARK, TABLE, "torques.*", "metadata.yaml", "{name}.db3*", "{name}.mcap"))
+PAGE = "report.html"
+CONTENTS = Contents(
+    MARK, (MARK, TABLE, PAGE, "torques.*", "metadata.yaml", "{name}.db3*", "{name}.mcap")
+)
 
 
 def check_output(
@@ -69,6 +73,7 @@ def write_retimed(
         move_up(directory / out.name)
         write_text(directory / TABLE, table_text(result))
         save_retime_figure(result, *(directory / f"torques.{suffix}" for suffix in figures))
+        write_retimed_page(directory / PAGE, result)
         write_text(directory / MARK, json_text(summary(result)))
 
 

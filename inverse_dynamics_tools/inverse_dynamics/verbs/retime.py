@@ -25,8 +25,9 @@ examples:
   ids retime planned --robot my_robot.yaml --margin 0.95 --out fast
       the band that holds 95 % of measured torques stays within limits
 
-The output directory is a recording of the trajectory with efforts; beside it a table, numbers and a
-figure. Limits of torque and velocity are those of the robot description unless they are given.
+The output directory is a recording of the trajectory with efforts; beside it a table, numbers, a
+figure, and report.html: the robot moving beside itself under one acceleration limit. Limits of
+torque and velocity are those of the robot description unless they are given.
 """
 
 
@@ -75,7 +76,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics._core import RetimeOptions
     from inverse_dynamics.evaluation.evaluation import Arm
     from inverse_dynamics.evaluation.retiming import description_limits, retime
-    from inverse_dynamics.results.retimed import summary, write_retimed
+    from inverse_dynamics.results.retimed import PAGE, summary, write_retimed
     from inverse_dynamics.verbs.screen import show, title
     from inverse_dynamics.verbs.tables import retime_table
 
@@ -120,6 +121,7 @@ def run(arguments: argparse.Namespace) -> None:
             ),
             ("note", result.notes),
             retime_table(result),
+            ("page", arguments.out / PAGE),
             ("written", arguments.out),
         ],
     )

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page of a timed path: the robot beside itself, timed by an acceleration limit; speed, torques, limits.
+
+write_retimed_page(Path("report.html"), retime(path, "ur10_real"))
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.base.files import write_text_whole
+from inverse_dynamics.evaluation.evaluation import Arm
+from inverse_dynamics.evaluation.retiming import sample_times
+from inverse_dynamics.figures.retiming import JOINT_COLORS
+from inverse_dynamics.figures.scene import Scene, read_scene
+from inverse_dynamics.report.page import (
+    ReportTable,
+    _asset,
+    _base64,
+    _json_for_html,
+    template,
+)
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.evaluation.retiming import Retimed
+
+RATE = 250.0  # Hz, of what is drawn
+_FASTEST, _OTHER = ("fastest", "computed"), ("constant acceleration", "error")  # names, colours
+
+
+def write_retimed_page(path: Path, result: Retimed) -> None:
+    """Write the page, whole or not at all; what is there is replaced. Raises OutputError."""
+    write_text_whole(path, render_retimed_page(result))
+
+
+def render_retimed_page(result: Retimed) -> str:
+    """The page as text."""
+    robot, arm = result.robot, Arm(result.robot)
+    scene = Scene() if robot.urdf is None else read_scene(robot.urdf, arm.joint_names)
+    motions = [(_FASTEST, result.time, result.q, result.efforts)]
+    if (other := result.by_acceleration) is not None:
+        time = sample_times(other.duration, RATE)
+        states = other.states(time)
+        motions.append((_OTHER, time, states[0], arm.solver.torques(*states)))
+    plots = [
+        _speed_plot(result),
+        *(_torque_plot(result, j, motions) for j in range(len(arm.units))),
+    ]
+    data = {
+        "links": list(scene.links),
+        "joints": len(arm.units),
+        "motions": [{"time": _base64(time), "q": _base64(q.T)} for _, time, q, _ in motions],
+        "plots": plots,
+    }
+    return template("retimed.html").render(
+        title=f"{robot.name}: the fastest motion along a path",
+        key=_key(result),
+        motions=[
+            {"name": name, "style": style, "duration": f"{time[-1]:.3f} s"}
+            for (name, style), time, _, _ in motions
+        ],
+        drawn=bool(scene.links),
+        banded=bool(result.band.any()),
+        strip=_strip(result),
+        plots=plots,
+        table=_table(result),
+        assumptions=_assumptions(result),
+        notes=[*result.notes, *scene.notes],
+        data=_json_for_html(data),
+        script="\n".join(_asset(name) for name in ("scene.js", "plots.js", "retimed.js")),
+    )
+
+
+def _key(result: Retimed) -> list[tuple[str, str]]:
+    energy = result.energy
+    rows = [("duration", f"{result.duration:.3f} s")]
+    if result.by_acceleration is not None:
+        rows += [
+            ("with constant acceleration", f"{result.by_acceleration.duration:.3f} s"),
+            ("saved", f"{result.seconds_saved:.3f} s"),
+        ]
+    return [
+        *rows,
+        ("energy", f"{energy.driven:.1f} J"),
+        ("of it friction", f"{energy.friction:.1f} J"),
+        ("peak power", f"{energy.peak_power:.0f} W"),
+    ]
+
+
+def _series(name: str, style: str, time: Floats, values: Floats) -> dict[str, str]:
+    return {"name": name, "style": style, "time": _base64(time), "values": _base64(values)}
+
+
+def _speed_plot(result: Retimed) -> dict[str, Any]:
+    """Speeds of both motions over time; the limit is that of the place which the fastest one passes."""
+    timed, other = result.timed, result.by_acceleration
+    limit = np.nan_to_num(result.speed_limit, nan=0.0)
+    shown = np.minimum(limit, 1.25 * timed.speed.max())
+    series = [_series("limit", "measured", timed.time, shown)]
+    if other is not None:
+        series.append(_series(*_OTHER, other.time, other.speed))
+    series.append(_series(*_FASTEST, timed.time, timed.speed))
+    return {"label": "speed along the path", "unit": "rad/s", "series": series}
+
+
+def _torque_plot(
+    result: Retimed, j: int, motions: list[tuple[tuple[str, str], Floats, Floats, Floats]]
+) -> dict[str, Any]:
+    ends = np.array([0.0, max(time[-1] for _, time, _, _ in motions)])
+    limit = result.limits.torque[j]
+    series = [_series("limit", "measured", ends, np.full(2, sign * limit)) for sign in (1, -1)]
+    for (name, style), time, _, torques in reversed(motions):
+        series.append(_series(name, style, time, torques[:, j]))
+    half = float(result.band[j])
+    return {
+        "label": result.joint_names[j],
+        "unit": result.units[j],
+        "series": series,
+        "band": [{"from": 0.0, "to": result.duration, "half": half}] if half else [],
+        "left_out": spans(result.time, result.limiting == j),
+    }
+
+
+def spans(place: Floats, flags: Mask) -> list[tuple[float, float]]:
+    """Where flags of samples hold: from, to; half way to their neighbours."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], flags.astype(int), [0]))))
+    borders = np.concatenate(([place[0]], (place[1:] + place[:-1]) / 2, [place[-1]]))
+    return [(float(borders[a]), float(borders[b])) for a, b in edges.reshape(-1, 2)]
+
+
+def _strip(result: Retimed) -> dict[str, Any]:
+    """Colours of the joints at their limits along the path, from 0 to 1."""
+    s = np.interp(result.time, result.timed.time, result.timed.s)
+    share = (s - s[0]) / (s[-1] - s[0])
+    found, shown = [], []
+    for j, joint in enumerate(result.joint_names):
+        color = JOINT_COLORS[j % len(JOINT_COLORS)]
+        own = spans(share, result.limiting == j)
+        found += [{"start": f"{a:.5f}", "width": f"{b - a:.5f}", "color": color} for a, b in own]
+        if own:
+            shown.append((joint, color))
+    return {"spans": found, "joints": shown, "text": ", ".join(joint for joint, _ in shown)}
+
+
+def _table(result: Retimed) -> ReportTable:
+    rows = [
+        (
+            joint,
+            float(np.abs(result.efforts[:, j]).max()),
+            float(result.limits.torque[j]),
+            result.units[j],
+            float(100 * result.at_limit[j]),
+            float(np.abs(result.qd[:, j]).max()),
+        )
+        for j, joint in enumerate(result.joint_names)
+    ]
+    headings = ("joint", "peak", "limit", "unit", "at limit [% of time]", "velocity [rad/s]")
+    return ReportTable("Load of each joint", headings, rows)
+
+
+def _assumptions(result: Retimed) -> list[tuple[str, str]]:
+    robot, limits = result.robot, result.limits
+    rows = [
+        ("solver", robot.plugin),
+        ("model file", robot.model.name if robot.model else ""),
+        ("description", robot.urdf.name if robot.urdf else ""),
+        ("friction", "as the solver models it" if robot.friction else "left out"),
+        *(
+            (f"limits of {name}", ", ".join(f"{value:g}" for value in getattr(limits, name)))
+            for name in ("velocity", "acceleration", "jerk")
+        ),
+        ("speed of the tip", f"{limits.tip_speed:g} m/s" if np.isfinite(limits.tip_speed) else ""),
+        (
+            "constant acceleration",
+            f"{result.acceleration:.3g} rad/s² in each joint" if result.by_acceleration else "",
+        ),
+    ]
+    return [(name, text) for name, text in rows if text]
