@@ -25,6 +25,7 @@ from inverse_dynamics.data.joint_trajectories import read_joint_trajectories
 from inverse_dynamics.data.table_logs import LogFormat, open_table, read_motion
 from inverse_dynamics.errors import BagError, UserError
 from inverse_dynamics.evaluation.evaluation import Arm
+from inverse_dynamics.evaluation.motion_energy import MotionEnergy
 from inverse_dynamics.robot.descriptions import joint_limits
 from inverse_dynamics.robot.robots import Robot, load_robot
 
@@ -37,27 +38,13 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Integers
 
 _UNLIMITED = 1e6  # N m: of motions that only accelerations limit
+_OF_MOTORS = ("knee_velocity", "no_load_velocity")
+_PER_JOINT = ("torque", "velocity", "acceleration", "jerk", *_OF_MOTORS)
+_WEIGHING_RATE = 250.0  # Hz, of samples for energies
+_SLOWEST = 0.05  # share of the fastest motion's velocities
+_SECTIONS = 9  # of the search: the share is known to 3 %, the sum to far less
+_STILL = 1e-6  # rad/s
 _AT_LIMIT = 0.99  # of a limit: the joint is said to be at it
-
-
-@dataclass(frozen=True)
-class MotionEnergy:
-    """What a motion takes. Joints that brake give nothing back."""
-
-    driven: float  # J, integral of positive power over all joints
-    friction: float  # J, of it lost to friction
-    peak_power: float  # W, the greatest sum of positive powers
-
-    @classmethod
-    def of(
-        cls, solver: Solver, time: Floats, q: Floats, qd: Floats, efforts: Floats
-    ) -> MotionEnergy:
-        """Of N states at times (N,) s: q, qd, efforts (N, n)."""
-        power = np.maximum(efforts * qd, 0.0).sum(axis=1)
-        lost = (solver.friction_vector(qd, q=q) * qd).sum(axis=1)
-        return cls(
-            float(np.trapezoid(power, time)), float(np.trapezoid(lost, time)), float(power.max())
-        )
 
 
 @dataclass(frozen=True)
@@ -124,6 +111,7 @@ def retime(
     deviation: float | None = None,
     stops: Sequence[int] = (),
     options: RetimeOptions | None = None,
+    weight: float = 0.0,
     rate: float = 250.0,
 ) -> Retimed:
     """Time a path so that it takes as little as the limits allow.
@@ -132,7 +120,8 @@ def retime(
     table, or a YAML file with `joints` and `positions`, times ignored; or a JointPath. limits:
     None: those of the robot description. deviation: straight lines whose corners the path passes by
     at most this distance [rad]; None: a cubic spline through all waypoints. stops: numbers of
-    waypoints, from 0, to stand still at. rate: of the samples, Hz.
+    waypoints, from 0, to stand still at. weight: s/J; above 0 the motion is slower and minimises, about,
+    duration + weight * energy [docs/retime.md]. rate: of the samples, Hz.
 
     Raises UserError: BagError, RobotError, SolverError; the path can't be held, and where.
     """
@@ -140,6 +129,8 @@ def retime(
         robot = load_robot(robot)
     if not rate > 0.0:
         raise UserError(f"rate: expected a number above zero, Hz, got {rate:g}")
+    if not 0.0 <= weight < np.inf:
+        raise UserError(f"weight: expected a finite number, s/J, at least zero, got {weight:g}")
     arm = Arm(robot)
     options = options or RetimeOptions()
     limits = limits or description_limits(arm, robot)
@@ -151,6 +142,8 @@ def retime(
             else JointPath.lines(waypoints, deviation, list(stops))
         )
     timed = retime_path(arm.solver, path, limits, options)
+    if weight > 0.0:
+        timed = _weighted(arm.solver, path, limits, options, timed, weight)
     time = sample_times(timed.duration, rate)
     q, qd, qdd = timed.states(time)
     efforts = arm.solver.torques(q, qd, qdd)
@@ -256,23 +249,77 @@ def _band(solver: Solver, margin: float) -> Floats:
     return deviation * NormalDist().inv_cdf((1 + margin) / 2) / 1.959963984540054
 
 
+def _changed(limits: MotionLimits, **changes: Floats) -> MotionLimits:
+    """A copy with other limits."""
+    names = (*_PER_JOINT, "tip_speed")
+    return MotionLimits(**{**{name: getattr(limits, name) for name in names}, **changes})
+
+
+def _weighted(
+    solver: Solver,
+    path: JointPath,
+    limits: MotionLimits,
+    options: RetimeOptions,
+    fastest: TimedPath,
+    weight: float,
+) -> TimedPath:
+    """The motion of least duration + weight * energy among those that cap velocities.
+
+    Each joint keeps below one share, the same for all, of its greatest velocity in the fastest motion.
+    """
+    time = sample_times(fastest.duration, _WEIGHING_RATE)
+    greatest = np.maximum(np.abs(fastest.states(time)[1]).max(axis=0), _STILL)
+
+    def total(timed: TimedPath) -> float:
+        time = sample_times(timed.duration, _WEIGHING_RATE)
+        states = timed.states(time)
+        energy = MotionEnergy.of(solver, time, *states[:2], solver.torques(*states))
+        return float(timed.duration) + weight * energy.driven
+
+    def weighed(exponent: float) -> tuple[float, TimedPath]:
+        capped = _changed(limits, velocity=greatest * np.exp(exponent))
+        try:
+            timed = retime_path(solver, path, capped, options)
+        except UserError:  # a place that can't be passed that slowly
+            return np.inf, fastest
+        return total(timed), timed
+
+    # golden section search for the logarithm of the share
+    low, high = np.log(_SLOWEST), 0.0
+    ratio = (np.sqrt(5.0) - 1.0) / 2.0
+    places = [high - ratio * (high - low), low + ratio * (high - low)]
+    found = [weighed(place) for place in places]
+    best = min((total(fastest), fastest), *found, key=lambda one: one[0])
+    for _ in range(_SECTIONS):
+        left = found[0][0] < found[1][0]
+        low, high = (low, places[1]) if left else (places[0], high)
+        new = high - ratio * (high - low) if left else low + ratio * (high - low)
+        tried = weighed(new)
+        places = [new, places[0]] if left else [places[1], new]
+        found = [tried, found[0]] if left else [found[1], tried]
+        best = min(best, tried, key=lambda one: one[0])
+    return best[1]
+
+
 def _by_acceleration(
     solver: Solver, path: JointPath, limits: MotionLimits, options: RetimeOptions
 ) -> tuple[float, TimedPath | None]:
     """The greatest acceleration limit, the same for all joints, under which torques hold, and its motion."""
     band = _band(solver, options.margin)
     n = len(solver.joint_names)
+    own = limits.acceleration if len(limits.acceleration) else np.full(n, np.inf)
+    unlimited = _changed(
+        limits, torque=np.full(n, _UNLIMITED), **dict.fromkeys(_OF_MOTORS, np.zeros(0))
+    )
+    speeds = {"start_speed": options.start_speed, "end_speed": options.end_speed}
+    grid = RetimeOptions(points=options.points, **speeds)
 
     def motion(acceleration: float) -> TimedPath | None:
-        common = {"velocity": limits.velocity} if len(limits.velocity) else {}
-        timed = retime_path(
-            solver,
-            path,
-            MotionLimits(
-                torque=np.full(n, _UNLIMITED), acceleration=np.full(n, acceleration), **common
-            ),
-            RetimeOptions(points=options.points),
-        )
+        common = _changed(unlimited, acceleration=np.minimum(own, acceleration))
+        try:
+            timed = retime_path(solver, path, common, grid)
+        except UserError:  # a speed at an end is too high
+            return None
         torques = solver.torques(*timed.states(sample_times(timed.duration, 500.0)))
         return timed if (np.abs(torques) <= limits.torque - band).all() else None
 

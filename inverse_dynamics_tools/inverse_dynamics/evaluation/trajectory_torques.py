@@ -31,6 +31,7 @@ from inverse_dynamics.data.table_logs import (
 )
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation.evaluation import Arm
+from inverse_dynamics.evaluation.motion_energy import MotionEnergy
 from inverse_dynamics.robot.descriptions import effort_limits
 from inverse_dynamics.robot.robots import Robot, load_robot
 
@@ -70,6 +71,7 @@ class TrajectoryTorques:
     limits: Floats  # (n,) N m; infinite: none
     times: tuple[Floats, ...]  # (N,) s, a trajectory each
     torques: tuple[Floats, ...]  # (N, n) N m, a trajectory each
+    energy: MotionEnergy  # of all trajectories
     trajectories: tuple[JointTrajectory, ...] = ()  # of a bag
     topic: str = ""  # of a bag
     notes: tuple[str, ...] = ()
@@ -149,6 +151,11 @@ def trajectory_torques(
         limits=effort_limits(robot.urdf, arm.description, solver.joint_names),
         times=tuple(time for time, _ in states),
         torques=tuple(torques),
+        energy=MotionEnergy.together(
+            MotionEnergy.of(solver, time, state[0], state[1], computed)
+            for (time, state), computed in zip(states, torques, strict=True)
+            if len(time)
+        ),
         trajectories=tuple(trajectories),
         topic=trajectories[0].topic if trajectories else "",
         notes=(*notes, *solver.warnings),

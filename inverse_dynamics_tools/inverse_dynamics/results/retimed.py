@@ -114,9 +114,7 @@ def summary(result: Retimed) -> dict[str, Any]:
         "duration": result.duration,
         "duration_by_acceleration": result.duration + result.seconds_saved,
         "acceleration": result.acceleration,
-        "energy": result.energy.driven,
-        "energy_friction": result.energy.friction,
-        "peak_power": result.energy.peak_power,
+        **result.energy.numbers,
         "joints": [
             {
                 "joint": joint,

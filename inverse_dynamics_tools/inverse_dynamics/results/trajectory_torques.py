@@ -88,7 +88,7 @@ def write_trajectory_torques(
 
 
 def summary(result: TrajectoryTorques) -> dict[str, Any]:
-    """Solver, and load of each joint, for JSON; a missing limit is null."""
+    """Solver, energy, and load of each joint, for JSON; a missing limit is null."""
     robot = result.robot
     return {
         "schema": 1,
@@ -98,6 +98,7 @@ def summary(result: TrajectoryTorques) -> dict[str, Any]:
         "plugin": robot.plugin,
         "friction": robot.friction,
         "gravity": robot.gravity,
+        **result.energy.numbers,
         "joints": result.loads,
     }
 

@@ -56,6 +56,11 @@ def declare(options: Options) -> None:
     limits.add("--jerk A,B,...", "rad/s^3, by a pass after the optimisation", numbers)
     limits.add("--tip-speed M/S", "speed of the tip, m/s", positive_number)
     limits.add("--margin SHARE", "of measured torques that stay within limits: 0.95", share)
+    options.add(
+        "--weight S/J",
+        "minimise about duration + weight * energy: slower, less energy",
+        positive_number,
+    )
     options.shared("--json", "--topic")
     options.overrides(*SOLVER, *TABLE)
 
@@ -92,6 +97,7 @@ def run(arguments: argparse.Namespace) -> None:
         topic=arguments.topic or "",
         deviation=arguments.deviation,
         stops=arguments.stops,
+        weight=arguments.weight or 0.0,
         options=RetimeOptions(margin=arguments.margin or 0.0),
     )
     write_retimed(
@@ -101,7 +107,12 @@ def run(arguments: argparse.Namespace) -> None:
         figures=arguments.figures,
         inputs=inputs,
     )
-    energy = result.energy
+    by_acceleration = [
+        f"{other.duration:.3f} s with at most {result.acceleration:.3g} rad/s^2 in each joint, the most that "
+        "keeps torques within limits here"
+        for other in (result.by_acceleration,)
+        if other is not None
+    ]
     show(
         arguments,
         summary(result),
@@ -109,16 +120,8 @@ def run(arguments: argparse.Namespace) -> None:
         [
             title(robot),
             ("duration", f"{result.duration:.3f} s"),
-            (
-                "by acceleration",
-                f"{result.duration + result.seconds_saved:.3f} s with at most {result.acceleration:.3g} "
-                "rad/s^2 in each joint, the most that keeps torques within limits here",
-            ),
-            (
-                "energy",
-                f"{energy.driven:.1f} J, {energy.friction:.1f} J of it friction; at most "
-                f"{energy.peak_power:.0f} W",
-            ),
+            ("by acceleration", by_acceleration),
+            ("energy", str(result.energy)),
             ("note", result.notes),
             retime_table(result),
             ("page", arguments.out / PAGE),

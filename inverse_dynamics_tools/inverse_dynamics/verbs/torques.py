@@ -28,7 +28,7 @@ examples:
       for a robot whose controller compensates friction itself
 
 Each point needs positions, velocities and accelerations. An output directory also holds torques.json:
-how efforts were computed, and the peak of each joint. The printed table shows which
+how efforts were computed, energy and peak power, and the peak of each joint. The printed table shows which
 joints would exceed the effort limits of the robot description, and when first.
 """
 
@@ -84,6 +84,7 @@ def run(arguments: argparse.Namespace) -> None:
             title(robot),
             ("solver", f"{robot.plugin}{'' if robot.friction else ', friction left out'}"),
             ("trajectories", f"{len(result.times)}, with {points} together"),
+            ("energy", str(result.energy)),
             ("note", notes),
             load_table(result),
             ("written", arguments.out),
