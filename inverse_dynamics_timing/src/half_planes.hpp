@@ -47,7 +47,7 @@ class HalfPlanes {
     return result;
   }
 
-  /// Moves x to the nearest place from it towards `to` that leaves room for a y; false: there is none.
+  /// Moves x >= 0 to the nearest place from it towards `to` that leaves room for a y; false: there is none.
   bool approach(double& x, double to) const {
     const double from = x;
     if (!newton(x, to)) return false;
@@ -57,12 +57,20 @@ class HalfPlanes {
   }
 
  private:
+  static constexpr double kRounding = 1e-13;  // share of x
+
   // `low - high` is convex in x, so Newton's method comes monotonously, in as many steps as lines.
   bool newton(double& x, double to) const {
     for (std::size_t step = 0; step <= upper_.size() + lower_.size(); ++step) {
       const Range here = range(x);
       if (!here.empty()) return true;
       const double next = x - (here.low - here.high) / (here.low_slope - here.high_slope);
+      if (std::abs(next - x) <= kRounding * x) {
+        // Rounding of a steep line hides the place: a little beyond it there is room.
+        const double beyond = 10 * kRounding * x;
+        x = to < x ? std::max(to, next - beyond) : std::min(to, next + beyond);
+        return true;
+      }
       // Also false for a NaN: parallel lines.
       const bool towards = to < x ? next < x && next >= to : next > x && next <= to;
       if (!towards) return false;

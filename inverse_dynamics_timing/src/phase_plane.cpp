@@ -96,7 +96,9 @@ double PhasePlane::forward(Index k) {
   for (int program = 0; program < kPrograms; ++program) {
     look(k + 1, y, next_);
     addInterval(k);
-    const HalfPlanes::Range range = planes_.range(x);
+    HalfPlanes::Range range = planes_.range(x);
+    double near = x;
+    if (range.empty() && planes_.approach(near, 0.0)) range = planes_.range(near);
     // Rounding, or friction that makes what is reachable more than an interval, leaves no room.
     const double to = range.low > range.high ? (range.low + range.high) / 2 : range.high;
     const double y_to = std::clamp(to, low_[k + 1], high_[k + 1]);
@@ -119,7 +121,8 @@ bool PhasePlane::solve(double start, double end) {
     double missing = 0.0;
     const Index joint = dynamics_.weakest(k, missing);
     stands_.push_back(joint < 0);
-    if (joint < 0 || greatest(k) >= 0.0) continue;
+    const bool rests = (k == 0 && start == 0.0) || (k == last && end == 0.0);
+    if (joint < 0 || (!rests && greatest(k) >= 0.0)) continue;
     refuse(k, Refusal::Reason::kTorqueAtRest);
     refusal_.joint = joint, refusal_.missing = missing;
     return false;

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "dense_reference.hpp"
+#include "half_planes.hpp"
 
 namespace {
 
@@ -96,6 +97,25 @@ auto refused(const std::string& text) {
 }
 
 // A mass pushed halfway and braked halfway: T = 2 sqrt(way m / F).
+TEST(HalfPlanes, StepsOfASteepLineEndWhereRoundingHidesThePlace) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> number(0.5, 1.0);
+  for (int exponent = 0; exponent < 100; ++exponent) {
+    for (int k = 0; k < 100; ++k) {
+      // 0 <= y <= top, 2 x - p y <= t: with a small p all about x
+      const double p = std::pow(10.0, -exponent), top = 50 * number(random),
+                   t = 40 * number(random);
+      HalfPlanes planes;
+      planes.add(1.0, 0.0, top);
+      planes.add(-1.0, 0.0, 0.0);
+      planes.add(-p, 2.0, t);
+      double x = 100.0;
+      ASSERT_TRUE(planes.approach(x, 0.0)) << "p " << p << ", top " << top << ", t " << t;
+      ASSERT_NEAR(x, (t + p * top) / 2, 1e-9);
+    }
+  }
+}
+
 TEST(Retime, SliderIsPushedHalfwayAndBrakedHalfway) {
   const auto solver = slider();
   const Path path = Path::lines((MatrixXd(1, 2) << -1.0, 2.0).finished(), 0.0);

@@ -149,6 +149,15 @@ def test_as_fast_as_toppra(robot):
         assert ours.duration == pytest.approx(theirs.duration, rel=SHORTER)
 
 
+def test_every_path_is_timed_on_which_the_robot_can_stand():
+    """Among them one with a point without inertia for joint 2, beside a point of the grid."""
+    solver = load_robot("panda_real").solver()
+    velocity = [2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61]
+    limits = MotionLimits(torque=LIMITS["panda_simulated"], velocity=velocity)
+    for waypoints in np.random.default_rng(1).uniform(-1.0, 1.0, (1010, 5, 7)):
+        assert retime_path(solver, JointPath.spline(waypoints), limits).duration < 10.0
+
+
 def test_continuous_joints_take_the_short_way():
     urdf = """<robot name="turner"><link name="base"/><link name="arm"><inertial><mass value="1"/>
       <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>

@@ -71,7 +71,7 @@ struct RetimeOptions {
 struct Refusal {
   enum class Reason {
     kNone,
-    kTorqueAtRest,  ///< a joint can't hold the robot at `s`, nor pass at any speed
+    kTorqueAtRest,  ///< a joint can't hold the robot at `s`, where it rests, or where no speed helps
     kNoWayOn,       ///< each speed at `s` leads where limits can't be kept
     kStartTooFast,  ///< the start's speed is beyond what limits allow
   };
