@@ -33,7 +33,18 @@ EXTRAS = {
 
 
 # What Debian and Ubuntu have as python3-MODULE, and what PyPI names otherwise.
-_OF_APT = {"argcomplete", "collada", "dask", "distributed", "jinja2", "matplotlib", "numpy", "rich", "scipy", "yaml"}
+_OF_APT = {
+    "argcomplete",
+    "collada",
+    "dask",
+    "distributed",
+    "jinja2",
+    "matplotlib",
+    "numpy",
+    "rich",
+    "scipy",
+    "yaml",
+}
 _OF_PYPI = {"collada": "pycollada", "yaml": "pyyaml"}
 
 
