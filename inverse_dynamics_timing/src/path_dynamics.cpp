@@ -131,6 +131,9 @@ double PathDynamics::excess(Index k, double x, double y) const {
   qd *= std::sqrt(z);
   solver_.getFrictionVector(q, qd, f);
   double most = 0.0;
+  if (limits_.velocity.size() > 0) {
+    most = (qd.array().abs() / limits_.velocity.array()).maxCoeff() - 1.0;
+  }
   for (Index j = 0; j < n; ++j) {
     const double tau = (a_(j, k) + a_(j, k + 1)) / 2 * u + (b_(j, k) + b_(j, k + 1)) / 2 * z +
                        (g_(j, k) + g_(j, k + 1)) / 2 + f[j];

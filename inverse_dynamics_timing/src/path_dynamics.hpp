@@ -40,8 +40,9 @@ class PathDynamics {
   void room(Eigen::Index k, double z, Room& room) const;
   Room emptyRoom() const;
 
-  /// How far a torque is above its limit in the middle of interval k, as a share of the limit, with
-  /// squared speeds x and y at its ends. Friction is that of the middle, the rest the mean of the ends.
+  /// How far a torque or a velocity is above its limit in the middle of interval k, as a share of the
+  /// limit, with squared speeds x and y at its ends. Friction is that of the middle, the rest of the
+  /// torque the mean of the ends.
   double excess(Eigen::Index k, double x, double y) const;
 
   /// The joint that lacks most torque to stand still at point k, and how much; -1: none lacks any.

@@ -57,8 +57,8 @@ constexpr double kAllowed = 1e-3;  // above a limit between points, share of it
 constexpr int kRefinements = 5;
 constexpr Index kParts = 4;
 
-/// The grid with intervals split in whose middle limits are passed: friction changes within them, as
-/// a joint turns back. Empty: none are.
+/// The grid with intervals split in whose middle limits are passed: friction, or how fast a joint may
+/// move along the path, changes within them, as a joint turns back. Empty: none are.
 VectorXd refined(const PathDynamics& dynamics, const VectorXd& z) {
   std::vector<double> s{dynamics.s(0)};
   for (Index k = 0; k + 1 < dynamics.points(); ++k) {

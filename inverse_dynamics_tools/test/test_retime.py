@@ -158,6 +158,20 @@ def test_every_path_is_timed_on_which_the_robot_can_stand():
         assert retime_path(solver, JointPath.spline(waypoints), limits).duration < 10.0
 
 
+def test_limits_hold_between_points_of_the_grid():
+    """Where a joint turns back in a corner, the speed that its velocity allows changes fast."""
+    solver = load_robot("panda_real").solver()
+    torque, velocity = LIMITS["panda_simulated"], [2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61]
+    random = np.random.default_rng(7)
+    for k in range(100):
+        waypoints = random.uniform(-1.2, 1.2, (random.integers(2, 6), 7))
+        path = JointPath.spline(waypoints) if k % 2 else JointPath.lines(waypoints, 0.05)
+        timed = retime_path(solver, path, MotionLimits(torque=torque, velocity=velocity))
+        q, qd, qdd = timed.states(sample_times(timed.duration, 1000.0))
+        assert (np.abs(qd) / velocity).max() < 1.0 + SHORTER
+        assert (np.abs(solver.torques(q, qd, qdd)) / torque).max() < 1.0 + SHORTER
+
+
 def test_continuous_joints_take_the_short_way():
     urdf = """<robot name="turner"><link name="base"/><link name="arm"><inertial><mass value="1"/>
       <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
