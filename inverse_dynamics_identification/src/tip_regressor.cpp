@@ -63,12 +63,16 @@ void TipRegressor::compute(const inverse_dynamics_solver::ConstVectorRef& q,
   const chain_dynamics::Motion<double> V{R_t0 * velocity.tail<3>(), Eigen::Vector3d::Zero()};
   const chain_dynamics::Motion<double> A{R_t0 * acceleration.tail<3>(),
                                          R_t0 * (acceleration.head<3>() - gravity_)};
-  const auto F = chain_dynamics::internal::bodyRegressor(V, A);
 
-  // tau = J' [R f; R n]
+  // tau = J' [R f; R n] of the force that a unit of each parameter needs
   Eigen::Matrix<double, 6, 10> F_0;
-  F_0.topRows<3>().noalias() = X_0t.R * F.force;
-  F_0.bottomRows<3>().noalias() = X_0t.R * F.moment;
+  for (Eigen::Index column = 0; column < 10; ++column) {
+    const auto I = chain_dynamics::SpatialInertia<double>::fromVector(
+        chain_dynamics::Vector10<double>::Unit(column));
+    const chain_dynamics::Force<double> F = I * A + cross(V, I * V);
+    F_0.col(column).head<3>().noalias() = X_0t.R * F.force;
+    F_0.col(column).tail<3>().noalias() = X_0t.R * F.moment;
+  }
   Y.noalias() = J_.transpose().lazyProduct(F_0);
 }
 

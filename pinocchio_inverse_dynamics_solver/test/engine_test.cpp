@@ -3,7 +3,7 @@
 /// Pinocchio as the judge of the engine: what no solver offers, and chains that no file describes.
 #include <gtest/gtest.h>
 
-#include <chain_dynamics/forward_dynamics.hpp>
+#include <chain_dynamics/fast_model.hpp>
 #include <chain_dynamics/inertia_matrix.hpp>
 #include <chain_dynamics/regressor.hpp>
 #include <chain_dynamics/torque_derivatives.hpp>
@@ -65,7 +65,8 @@ TEST_P(Engine, AgreesWithPinocchio) {
     chain_dynamics::torques(chain, q, qd, qdd, tau);
     chain_dynamics::inertiaMatrix(chain, q, H);
     chain_dynamics::regressor(chain, q, qd, qdd, Y);
-    chain_dynamics::forwardDynamics(chain, q, qd, tau, forward);
+    chain_dynamics::FastModel(chain_dynamics::Model(chain))
+        .forwardDynamics(q.data(), qd.data(), tau.data(), forward.data());
     chain_dynamics::torqueDerivatives(chain, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
 
     const auto models = std::make_shared<const Models>(
