@@ -5,7 +5,7 @@
 ///
 ///     Model ur10 = modelFromFile("ur10_identified.yaml");
 ///     Model mine = modelFromYaml("schema: 1\nname: mine\n...", "mine.yaml");
-///     std::ofstream("mine.yaml") << modelFileText(mine);     // every digit
+///     const std::string text = modelFileText(mine);          // every digit
 ///
 /// Files are read strictly: an unknown, missing or repeated key, a wrong length or type and a
 /// number that isn't finite are errors that name file, line and key. Check rows, states with the

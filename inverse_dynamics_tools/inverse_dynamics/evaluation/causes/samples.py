@@ -70,7 +70,8 @@ def pieces_of(
         return None
     starts = np.linspace(0, count - length, min(_PIECES, count // length)).astype(np.int64)
     rows = valid[starts[:, None] + np.arange(length)]
-    return Samples(tuple(joints), time[rows], *(v[rows] for v in motion), measured[rows])
+    q, qd, qdd = (values[rows] for values in motion)
+    return Samples(tuple(joints), time[rows], q, qd, qdd, measured[rows])
 
 
 @dataclass(frozen=True)
