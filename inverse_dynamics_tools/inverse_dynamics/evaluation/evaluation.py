@@ -316,10 +316,10 @@ def _compare(
     effort = _core.effort_options(robot, arm.solver, effort_is, motion.effort_is)
 
     def ask(found: Evaluated) -> Verdict:
-        time, q, qd, qdd, effort, kept = (
+        time, q, qd, qdd, recorded, kept = (
             found.table.series[name] for name in ("time", "q", "qd", "qdd", "effort", "kept")
         )
-        samples = pieces_of(arm.joint_names, time, (q, qd, qdd), effort, kept)
+        samples = pieces_of(arm.joint_names, time, (q, qd, qdd), recorded, kept)
         model = arm_model(robot, arm.solver, arm.description)
         return meaning_of_efforts(samples, model, effort.drive_gains)
 
