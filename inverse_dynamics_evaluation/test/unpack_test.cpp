@@ -13,7 +13,6 @@
 
 namespace inverse_dynamics_evaluation::unpack_test {
 
-
 Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
 
 Bytes zstdOf(const Bytes& raw) {

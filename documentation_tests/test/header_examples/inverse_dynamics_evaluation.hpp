@@ -27,7 +27,7 @@ extern const RecordedColumns log;
 extern const Eigen::VectorXd time;
 extern Eigen::MatrixXd q, qd, effort;
 extern const Eigen::MatrixXd gravity, computed, measured;
-extern const SampleReport samples;
+extern SampleTable table;
 
 // Samples of a recording.
 extern JointStateSource& source;

@@ -4,7 +4,7 @@
 /// Errors of computed against measured torques, joint by joint.
 ///
 ///     std::vector<JointMetrics> all = metrics(computed, measured);
-///     std::vector<JointMetrics> kept = metrics(computed, measured, samples.kept);
+///     std::vector<JointMetrics> kept = metrics(computed, measured, table.kept);
 ///     std::cout << all[0].rmse << " N m, " << 100 * all[0].nrmse << " %\n";
 ///
 /// The formulas are those of docs/notation.md. Sums are compensated, so long recordings lose no
