@@ -169,7 +169,10 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
   const Eigen::Index n = model.chain.jointCount();
   const Load load(model, q);
   for (Eigen::Index j = 0; j < n; ++j) {
-    dtau_dqd(j, j) += frictionSlope(model.friction[static_cast<std::size_t>(j)], qd[j], load.g[j]);
+    // What saturates has at infinity the slope that it has far out; NaN stays.
+    constexpr double kFarOut = 1e100;  // rad/s
+    const double v = std::clamp<double>(qd[j], -kFarOut, kFarOut);
+    dtau_dqd(j, j) += frictionSlope(model.friction[static_cast<std::size_t>(j)], v, load.g[j]);
   }
   if (!frictionDependsOnLoad(model)) return;
 
