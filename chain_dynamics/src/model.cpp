@@ -168,11 +168,11 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
   if (model.friction.empty()) return;
   const Eigen::Index n = model.chain.jointCount();
   const Load load(model, q);
+  // What saturates has at infinity the slope that it has far out; NaN stays.
+  const auto velocity = [&](Eigen::Index j) { return std::clamp<double>(qd[j], -1e100, 1e100); };
   for (Eigen::Index j = 0; j < n; ++j) {
-    // What saturates has at infinity the slope that it has far out; NaN stays.
-    constexpr double kFarOut = 1e100;  // rad/s
-    const double v = std::clamp<double>(qd[j], -kFarOut, kFarOut);
-    dtau_dqd(j, j) += frictionSlope(model.friction[static_cast<std::size_t>(j)], v, load.g[j]);
+    const FrictionLaw& law = model.friction[static_cast<std::size_t>(j)];
+    dtau_dqd(j, j) += frictionSlope(law, velocity(j), load.g[j]);
   }
   if (!frictionDependsOnLoad(model)) return;
 
@@ -187,7 +187,7 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
     gravityVector(model.chain, setsOf(model), moved, g);
     for (Eigen::Index j = 0; j < n; ++j) {
       const FrictionLaw& law = model.friction[static_cast<std::size_t>(j)];
-      dtau_dq(j, i) += frictionLoadSlope(law, qd[j], load.g[j]) * g[j].derivative[0];
+      dtau_dq(j, i) += frictionLoadSlope(law, velocity(j), load.g[j]) * g[j].derivative[0];
     }
   }
 }

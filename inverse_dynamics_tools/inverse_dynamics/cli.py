@@ -99,7 +99,7 @@ def _short_help(parser: argparse.ArgumentParser, examples: list[str]) -> list[st
     for group in parser._action_groups:
         options = [_usage(a) for a in group._group_actions if a.option_strings]
         if options:
-            lines += [f"{group.title}:", f"  {', '.join(options)}"]
+            lines.append(f"{group.title}: {', '.join(options)}")
     lines.append(f"all of it: {parser.prog} --help")
     return wrapped("\n".join(lines), terminal_width())
 

@@ -168,14 +168,15 @@ def test_the_verb_writes_yaml_json_and_figure(ids, recording):
     assert 0 < figures["mass_half_width"] < 0.1
     assert option("payload.yaml")["payload.mass"] == figures["mass"]
     again = ("payload", recording, "--robot", "panda_simulated", "--out", "payload.yaml")
-    code, _, err = ids(*again)
-    assert code == 2
-    assert "--overwrite" in err
-    code, out, err = ids(*again, "--overwrite", "--no-figures", "--json")
-    assert (code, err) == (0, "")
+    code, out, err = ids(*again, "--no-figures", "--json")
+    assert (code, err) == (0, "ids: replacing the earlier result in payload.yaml ...\n")
     written = ["payload.yaml", "payload.json", "payload.html"]
     document = {"schema": 3, "verb": "payload", "written": written, "result": figures}
     assert json.loads(out) == document
+    Path("payload.json").unlink()  # what is left may be the user's own
+    code, _, err = ids(*again)
+    assert code == 2
+    assert "payload.yaml: exists already" in err
 
 
 def test_all_files_or_none(recording, tmp_path, monkeypatch):
@@ -311,14 +312,13 @@ def test_the_estimator_takes_samples_one_by_one():
     noise = residual_noise(samples.time, np.random.default_rng(2).standard_normal((1200, 7)))
     assert noise.correlation_time == 0.2
     whole, each = (PayloadEstimator(panda(), PayloadOptions(noise)) for _ in range(2))
-    assert whole.run(*vars(samples).values()) == len(samples.time)
-    assert whole.run(*vars(samples).values()) == 0
+    run = samples.time, samples.motion, samples.measured
+    assert whole.run(*run) == len(samples.time)
+    assert whole.run(*run) == 0
     assert each.estimate()[1] == PayloadStatus.TOO_SHORT
-    for row in zip(*vars(samples).values(), strict=True):
-        assert each.update(*row) == PayloadStatus.OK
-    assert each.update(
-        0.0, *(part[0] for part in list(vars(samples).values())[1:])
-    ).text.startswith("the sample isn't later")
+    for time, *state, measured in zip(*vars(samples).values(), strict=True):
+        assert each.update(time, tuple(state), measured) == PayloadStatus.OK
+    assert each.update(0.0, tuple(state), measured).text.startswith("the sample isn't later")
     one, other = whole.estimate()[0], each.estimate()[0]
     assert (one.mass, one.covariance.tolist()) == (other.mass, other.covariance.tolist())
     each.restart()
@@ -334,7 +334,7 @@ def test_options_of_the_estimator_are_checked():
         PayloadEstimator(panda(), PayloadOptions(ResidualNoise([1.0], [1.0])))
     with pytest.raises(ValueError, match=r"measured: expected an array \(2, 7\)"):
         PayloadEstimator(panda(), PayloadOptions(noise)).run(
-            np.arange(2.0), *(np.zeros((2, 7)) for _ in range(3)), np.zeros((2, 6))
+            np.arange(2.0), (np.zeros((2, 7)),) * 3, np.zeros((2, 6))
         )
 
 
@@ -359,7 +359,7 @@ def test_threads_that_share_an_estimator_wait_for_each_other():
 
         def run(measured):
             start.wait()
-            added.append(estimator.run(time, q, qd, qdd, measured))
+            added.append(estimator.run(time, (q, qd, qdd), measured))
 
         threads = [threading.Thread(target=run, args=(measured,)) for measured in runs]
         for thread in threads:

@@ -22,7 +22,7 @@ namespace fast {
 namespace {
 
 constexpr Twist kNone = Twist::kNone, kRight = Twist::kRight, kAlmost = Twist::kAlmostRight,
-                kAny = Twist::kAny;
+                kAny = Twist::kAny;  // NOLINTBEGIN(modernize-use-bool-literals)
 
 /// Joints 2, 3, 4 (the first is 1) are parallel, and right angles elsewhere: Universal Robots.
 /// Their description's right angles have nine digits. Identified models have rows of their own.
@@ -44,7 +44,7 @@ constexpr Geometry<6> kAnySix = {
 constexpr Geometry<7> kAnySeven = {
     {kNone, kAny, kAny, kAny, kAny, kAny, kAny}, {0, 1, 1, 1, 1, 1, 1}, {0, 1, 1, 1, 1, 1, 1}};
 
-template <typename V>
+template <typename V>  // NOLINTEND(modernize-use-bool-literals)
 struct Recursions {
   void (*torques)(const Robot&, const State<V>&, const double* root, V* tau);
   void (*gravity)(const Robot&, const State<V>&, V* g);
