@@ -243,7 +243,7 @@ def test_in_a_workspace_without_the_data_it_is_named(monkeypatch, tmp_path):
         robot_names()
     assert str(caught.value).startswith(
         "package inverse_dynamics_robots: not found: expected an installed package of that name, "
-        f"got none in {tmp_path}/empty, {tmp_path}/full"
+        f"got none in {tmp_path}/full, {tmp_path}/empty"
     )
 
 
