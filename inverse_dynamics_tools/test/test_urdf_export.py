@@ -87,6 +87,8 @@ def test_what_is_fixed_to_a_link_is_part_of_it(found, tmp_path):
         parameters=1.1 * chain.parameters.reshape(2, 10),
         friction=found.model.friction[two],
         rotor_inertia=np.zeros(2),
+        torque_deviation=found.model.torque_deviation[two],
+        seen=found.model.seen[:, two],
     )
     blocks = tuple(replace(block, q=block.q[:, two]) for block in found.blocks)
     robot = Robot("oblique", "", urdf, RIGID_BODY, urdf=urdf)
