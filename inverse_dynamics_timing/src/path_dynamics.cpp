@@ -215,6 +215,8 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
       {options.points >= 2, "options.points", ">= 2", static_cast<double>(options.points)},
       {speed(options.start_speed), "options.start_speed", "finite, >= 0", options.start_speed},
       {speed(options.end_speed), "options.end_speed", "finite, >= 0", options.end_speed},
+      {limits.jerk.size() == 0 || options.start_speed + options.end_speed == 0.0, "limits.jerk",
+       "none, or start and end at rest", options.start_speed + options.end_speed},
       {options.margin >= 0.0 && options.margin < 1.0, "options.margin", "0 <= margin < 1",
        options.margin},
       {options.margin == 0.0 || (deviation != nullptr && deviation->hasTorqueDeviation()),

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <chain_dynamics/model_file.hpp>
 #include <cmath>
 #include <fstream>
 #include <inverse_dynamics_solver/exceptions.hpp>
@@ -294,12 +295,37 @@ TEST(Retime, SaysWhichJointLacksHowMuchTorque) {
 }
 
 TEST(Retime, MarginLeavesTheBandOfTheModelFree) {
-  auto solver = identified("ur10_identified.yaml");
+  const VectorXd band = 0.1 * pandaTorques();  // of 95 %
+  chain_dynamics::Model model = chain_dynamics::modelFromFile(
+      INVERSE_DYNAMICS_ROBOTS_DIR "/models/franka_gaz2019_feasible.yaml");
+  model.torque_deviation = band;
+  const std::string file = testing::TempDir() + "margin.yaml";
+  std::ofstream(file) << chain_dynamics::modelFileText(model);
+  RigidBody solver;
+  solver.initialize({{"model", file}});
+  const Path path = Path::spline(randomWaypoints(7, 1));
+  MotionLimits limits;
+  limits.torque = pandaTorques();
+  const double without = retime(solver, path, limits).trajectory.duration();
+  RetimeOptions options;
+  options.margin = 0.95;
+  const Retimed with = retime(solver, path, limits, options);
+  ASSERT_TRUE(with) << text(with.refusal, solver.jointNames());
+  EXPECT_NEAR(greatestUse(solver, with.trajectory, pandaTorques()), 0.9, kLimit);
+  EXPECT_GT(with.trajectory.duration(), without);
+  options.margin = 0.5;  // +- 0.6745 instead of 1.96 standard deviations
+  const Retimed half = retime(solver, path, limits, options);
+  EXPECT_NEAR(greatestUse(solver, half.trajectory, pandaTorques()), 1 - 0.1 * 0.6745 / 1.96,
+              kLimit);
+}
+
+TEST(Retime, MarginNeedsAModelThatStatesItsDeviation) {
   MotionLimits limits;
   limits.torque = ur10Torques();
   RetimeOptions options;
   options.margin = 0.95;
   const Path path = Path::spline(randomWaypoints(6, 1));
+  const auto solver = identified("ur10_identified.yaml");
   EXPECT_THAT([&] { retime(*solver, path, limits, options); }, refused("deviation"));
 }
 
@@ -373,6 +399,10 @@ TEST(Retime, RefusesWrongLimitsAndOptions) {
   EXPECT_THAT(with([](L& limits, O&) { limits.knee_velocity = VectorXd::Ones(1); }),
               refused("no_load_velocity"));
   EXPECT_THAT(with([](L& limits, O&) { limits.tip_speed = 0; }), refused("tip_speed"));
+  EXPECT_THAT(with([](L& limits, O& options) {
+                limits.jerk = VectorXd::Ones(1), options.start_speed = 0.1;
+              }),
+              refused("at rest"));
   EXPECT_THAT(with([](L&, O& options) { options.points = 1; }), refused("points"));
   EXPECT_THAT(with([](L&, O& options) { options.margin = 1; }), refused("margin"));
   EXPECT_THAT(with([](L&, O& options) { options.end_speed = -1; }), refused("end_speed"));

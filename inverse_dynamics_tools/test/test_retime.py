@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
 import os
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ from test_report import browser, complaints, wait_until
 from inverse_dynamics import Solver, cli, load_robot, retime, trajectory_torques
 from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retime_path
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
-from inverse_dynamics.evaluation.retiming import sample_times
+from inverse_dynamics.evaluation.retiming import description_limits, sample_times
 from inverse_dynamics.report.retimed import spans, write_retimed_page
 from inverse_dynamics.robot.robots import with_changes
 
@@ -170,6 +172,22 @@ def test_limits_hold_between_points_of_the_grid():
         q, qd, qdd = timed.states(sample_times(timed.duration, 1000.0))
         assert (np.abs(qd) / velocity).max() < 1.0 + SHORTER
         assert (np.abs(solver.torques(q, qd, qdd)) / torque).max() < 1.0 + SHORTER
+
+
+def test_a_joint_without_a_velocity_limit_leaves_the_others_theirs(tmp_path):
+    urdf = tmp_path / "arm.urdf"
+    text = load_robot("ur10_simulated").urdf.read_text()
+    element = ElementTree.fromstring(text)
+    stated = {
+        j.get("name"): float(j.find("limit").get("velocity"))
+        for j in element.findall("joint[limit]")
+    }
+    element.find("joint[@name='wrist_3_joint']/limit").set("velocity", "0")
+    urdf.write_text(ElementTree.tostring(element, encoding="unicode"))
+    robot = with_changes(load_robot("ur10_simulated"), urdf=urdf)
+    limits = description_limits(Arm(robot), robot)
+    assert limits.velocity[:5].tolist() == [stated[joint] for joint in JOINTS[:5]]
+    assert limits.velocity[5] > 1e3
 
 
 def test_continuous_joints_take_the_short_way():

@@ -22,8 +22,9 @@ namespace fast {
 namespace {
 
 constexpr Twist kNone = Twist::kNone, kRight = Twist::kRight, kAlmost = Twist::kAlmostRight,
-                kAny = Twist::kAny;  // NOLINTBEGIN(modernize-use-bool-literals)
+                kAny = Twist::kAny;
 
+// NOLINTBEGIN(modernize-use-bool-literals): 0 and 1 keep the tables readable
 /// Joints 2, 3, 4 (the first is 1) are parallel, and right angles elsewhere: Universal Robots.
 /// Their description's right angles have nine digits. Identified models have rows of their own.
 constexpr Geometry<6> kParallelWrist = {
@@ -43,8 +44,9 @@ constexpr Geometry<6> kAnySix = {
     {kNone, kAny, kAny, kAny, kAny, kAny}, {0, 1, 1, 1, 1, 1}, {0, 1, 1, 1, 1, 1}};
 constexpr Geometry<7> kAnySeven = {
     {kNone, kAny, kAny, kAny, kAny, kAny, kAny}, {0, 1, 1, 1, 1, 1, 1}, {0, 1, 1, 1, 1, 1, 1}};
+// NOLINTEND(modernize-use-bool-literals)
 
-template <typename V>  // NOLINTEND(modernize-use-bool-literals)
+template <typename V>
 struct Recursions {
   void (*torques)(const Robot&, const State<V>&, const double* root, V* tau);
   void (*gravity)(const Robot&, const State<V>&, V* g);

@@ -42,13 +42,17 @@ class Path {
   static Path lines(const Points& waypoints, double deviation,
                     const std::vector<Eigen::Index>& stops = {});
 
-  /// A function's path: quintic polynomials that have its `q`, `q'` and `q''` at the ends of pieces.
-  ///
-  /// @param evaluate  writes q, q', q'' at s; `q'` must not vanish.
-  /// @param knots     rising, the ends of the pieces; at least two.
+  /// Writes q, q' and q'' at s.
   using Function =
       std::function<void(double s, Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> dq,
                          Eigen::Ref<Eigen::VectorXd> ddq)>;
+
+  /// A function's path: quintic polynomials that have its `q`, `q'` and `q''` at the ends of pieces.
+  ///
+  /// @param evaluate  `q'` must not vanish.
+  /// @param joints    n.
+  /// @param knots     rising, the ends of the pieces; at least two.
+  /// @throws as spline(); a number of the function, or a knot, that isn't finite.
   static Path function(const Function& evaluate, Eigen::Index joints,
                        const Eigen::Ref<const Eigen::VectorXd>& knots);
 

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import Solver, TimedPath
     from inverse_dynamics.base.arrays import Floats, Integers
 
-_UNLIMITED = 1e6  # N m: of motions that only accelerations limit
+_UNLIMITED = 1e6  # N m, rad/s: beyond every joint
 _OF_MOTORS = ("knee_velocity", "no_load_velocity")
 _PER_JOINT = ("torque", "velocity", "acceleration", "jerk", *_OF_MOTORS)
 _WEIGHING_RATE = 250.0  # Hz, of samples for energies
@@ -143,7 +143,7 @@ def retime(
         )
     timed = retime_path(arm.solver, path, limits, options)
     if weight > 0.0:
-        timed = _weighted(arm.solver, path, limits, options, timed, weight)
+        timed = _weighted(arm.solver, timed, limits, options, weight)
     time = sample_times(timed.duration, rate)
     q, qd, qdd = timed.states(time)
     efforts = arm.solver.torques(q, qd, qdd)
@@ -179,11 +179,11 @@ def description_limits(arm: Arm, robot: Robot, **given: Sequence[float]) -> Moti
     Raises UserError where a joint has no torque limit.
     """
     joints = arm.solver.joint_names
-    found = {
-        "torque": joint_limits(robot.urdf, arm.description, joints, "effort"),
-        "velocity": joint_limits(robot.urdf, arm.description, joints, "velocity"),
-    }
-    found = {name: values for name, values in found.items() if np.isfinite(values).all()}
+    torque = joint_limits(robot.urdf, arm.description, joints, "effort")
+    velocity = joint_limits(robot.urdf, arm.description, joints, "velocity")
+    found = {"velocity": np.minimum(velocity, _UNLIMITED)}
+    if np.isfinite(torque).all():
+        found["torque"] = torque
     for name, values in given.items():
         if len(values) not in (1, len(joints)):
             raise UserError(
@@ -257,10 +257,9 @@ def _changed(limits: MotionLimits, **changes: Floats) -> MotionLimits:
 
 def _weighted(
     solver: Solver,
-    path: JointPath,
+    fastest: TimedPath,
     limits: MotionLimits,
     options: RetimeOptions,
-    fastest: TimedPath,
     weight: float,
 ) -> TimedPath:
     """The motion of least duration + weight * energy among those that cap velocities.
@@ -279,7 +278,7 @@ def _weighted(
     def weighed(exponent: float) -> tuple[float, TimedPath]:
         capped = _changed(limits, velocity=greatest * np.exp(exponent))
         try:
-            timed = retime_path(solver, path, capped, options)
+            timed = retime_path(solver, fastest.path, capped, options)
         except UserError:  # a place that can't be passed that slowly
             return np.inf, fastest
         return total(timed), timed
