@@ -288,6 +288,27 @@ def test_acceleration_is_compared_under_the_same_other_limits():
     assert retime(WAYPOINTS, "ur10_simulated", jerky).seconds_saved > -0.01
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        ("wrist_3_joint", "wrist_9_joint", r"way.yaml: joints: expected .*, got .*wrist_9_joint"),
+        ("[0.5, -1.5", "[30, -90", "shoulder_pan_joint: expected positions from -6.28.*degrees"),
+    ],
+)
+def test_files_of_other_robots_and_units_are_refused(tmp_path, old, new, text):
+    way = write_waypoints(tmp_path, ".yaml")
+    way.write_text(way.read_text().replace(old, new))
+    with pytest.raises(UserError, match=text):
+        retime(way, "ur10_simulated")
+
+
+def test_a_file_without_waypoints_is_named(tmp_path):
+    way = write_waypoints(tmp_path, ".yaml")
+    way.write_text(way.read_text().partition("positions")[0] + "positions: []\n")
+    with pytest.raises(UserError, match=r"way.yaml: expected two waypoints at least, got 0"):
+        retime(way, "ur10_simulated")
+
+
 def test_wrong_paths_are_refused():
     with pytest.raises(UserError, match="weight: expected a finite number"):
         retime(WAYPOINTS, "ur10_simulated", weight=np.nan)

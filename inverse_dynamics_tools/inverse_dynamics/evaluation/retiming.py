@@ -26,7 +26,7 @@ from inverse_dynamics.data.table_logs import LogFormat, open_table, read_motion
 from inverse_dynamics.errors import BagError, UserError
 from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
-from inverse_dynamics.robot.descriptions import joint_limits
+from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.robots import Robot, load_robot
 
 if TYPE_CHECKING:
@@ -44,6 +44,8 @@ _WEIGHING_RATE = 250.0  # Hz, of samples for energies
 _SLOWEST = 0.05  # share of the fastest motion's velocities
 _SECTIONS = 9  # of the search: the share is known to 3 %, the sum to far less
 _STILL = 1e-6  # rad/s
+_PLACES = 1001  # of a path, at which positions are checked
+_ROUNDING = 1e-6  # rad
 _AT_LIMIT = 0.99  # of a limit: the joint is said to be at it
 
 
@@ -123,7 +125,7 @@ def retime(
     waypoints, from 0, to stand still at. weight: s/J; above 0 the motion is slower and minimises, about,
     duration + weight * energy [docs/retime.md]. rate: of the samples, Hz.
 
-    Raises UserError: BagError, RobotError, SolverError; the path can't be held, and where.
+    Raises UserError: BagError, RobotError, SolverError; the path leaves a joint's range, or can't be held.
     """
     if not isinstance(robot, Robot):
         robot = load_robot(robot)
@@ -141,6 +143,7 @@ def retime(
             if deviation is None
             else JointPath.lines(waypoints, deviation, list(stops))
         )
+    _check_positions(path, arm, robot)
     timed = retime_path(arm.solver, path, limits, options)
     if weight > 0.0:
         timed = _weighted(arm.solver, timed, limits, options, weight)
@@ -179,9 +182,8 @@ def description_limits(arm: Arm, robot: Robot, **given: Sequence[float]) -> Moti
     Raises UserError where a joint has no torque limit.
     """
     joints = arm.solver.joint_names
-    torque = joint_limits(robot.urdf, arm.description, joints, "effort")
-    velocity = joint_limits(robot.urdf, arm.description, joints, "velocity")
-    found = {"velocity": np.minimum(velocity, _UNLIMITED)}
+    torque = _described(arm, robot, "effort", np.inf)
+    found = {"velocity": _described(arm, robot, "velocity", _UNLIMITED)}
     if np.isfinite(torque).all():
         found["torque"] = torque
     for name, values in given.items():
@@ -199,6 +201,28 @@ def description_limits(arm: Arm, robot: Robot, **given: Sequence[float]) -> Moti
     return MotionLimits(**found)
 
 
+def _described(arm: Arm, robot: Robot, limit: str, absent: float) -> Floats:
+    """(n,) of one of `lower`, `upper`, `velocity` and `effort`, as the description states it."""
+    if not arm.description:
+        return np.full(len(arm.joint_names), absent)
+    chain = chain_geometry(arm.description, robot.root, arm.joint_names)
+    return np.array([joint.limits.get(limit, absent) for joint in chain])
+
+
+def _check_positions(path: JointPath, arm: Arm, robot: Robot) -> None:
+    """Raise UserError where the path leaves the joints' ranges."""
+    q, _, _ = path.states(np.linspace(path.knots[0], path.knots[-1], _PLACES))
+    lower, upper = _described(arm, robot, "lower", -np.inf), _described(arm, robot, "upper", np.inf)
+    for j, joint in enumerate(arm.joint_names):
+        least, most = q[:, j].min(), q[:, j].max()
+        if least < lower[j] - _ROUNDING or most > upper[j] + _ROUNDING:
+            raise UserError(
+                f"path: joint {joint}: expected positions from {lower[j]:g} to {upper[j]:g}, the limits in "
+                f"{robot.urdf}, got {least:.4g} to {most:.4g}; change the path, and if waypoints are in "
+                "degrees, convert them (of a table: --scale q=deg)"
+            )
+
+
 def waypoints_of(path: Path | str | ArrayLike, robot: Robot, arm: Arm, topic: str) -> Floats:
     """(m, n) rad, in the order of the chain. Raises UserError."""
     if not isinstance(path, Path | str):
@@ -210,6 +234,13 @@ def waypoints_of(path: Path | str | ArrayLike, robot: Robot, arm: Arm, topic: st
             )
         return waypoints
     path = Path(path)
+    found = _waypoints_of_file(path, robot, arm, topic)
+    if len(found) < 2:
+        raise BagError(f"{path}: expected two waypoints at least, got {len(found)}")
+    return found
+
+
+def _waypoints_of_file(path: Path, robot: Robot, arm: Arm, topic: str) -> Floats:
     if path.suffix in (".yaml", ".yml"):
         return _waypoints_of_yaml(path, arm.joint_names)
     if is_csv(path):
@@ -225,7 +256,9 @@ def _waypoints_of_yaml(path: Path, joints: Sequence[str]) -> Floats:
     top = read_mapping(path, BagError)
     names = [entry.text() for entry in top.required("joints").entries()]
     if sorted(names) != sorted(joints):
-        top.required("joints").fail(f"the joints {', '.join(joints)}")
+        raise BagError(
+            f"{path}: joints: expected {', '.join(joints)}, got {', '.join(names)}; name the joints of the chain"
+        )
     positions = top.required("positions")
     rows = [[number.number() for number in row.entries()] for row in positions.entries()]
     if any(len(row) != len(names) for row in rows):

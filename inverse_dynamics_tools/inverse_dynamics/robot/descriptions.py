@@ -157,21 +157,14 @@ def joint_units(
 
 
 def effort_limits(file: Path | None, description: str, joint_names: Sequence[str]) -> Floats:
-    """(n,) N m (prismatic N) of the URDF: joint_limits()."""
-    return joint_limits(file, description, joint_names, "effort")
-
-
-def joint_limits(
-    file: Path | None, description: str, joint_names: Sequence[str], quantity: str
-) -> Floats:
-    """(n,) of the URDF: `effort` or `velocity`; infinite for a joint without one, or with zero.
+    """(n,) N m (prismatic N) of the URDF; infinite for a joint without one, or with zero.
 
     file: where the description is from, for errors. Raises RobotError if it isn't XML, or if a
     limit isn't a number.
     """
     found = {j.get("name"): j.find("limit") for j in _joints(file, description)}
     limits = [
-        numbers_or(found.get(name), quantity, (np.inf,), where=f"{file}: joint {name}")[0]
+        numbers_or(found.get(name), "effort", (np.inf,), where=f"{file}: joint {name}")[0]
         for name in joint_names
     ]
     return np.where(np.array(limits) > 0, limits, np.inf)
