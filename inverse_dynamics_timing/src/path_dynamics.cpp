@@ -33,23 +33,39 @@ VectorXd capOfTip(const InverseDynamicsSolver& solver, const MatrixXd& q, const 
   return cap;
 }
 
-/// Half the width of the band that holds a share of the measured torques.
-VectorXd bandOf(const InverseDynamicsSolver& solver, double margin) {
+[[noreturn]] void refuseOption(const std::string& where, const std::string& expected,
+                               const std::string& got) {
+  throw ids::InvalidParameterValueException(
+      ids::errorText("retime(): " + where, "", expected, got));
+}
+
+}  // namespace
+
+inline namespace v2 {
+
+chain_dynamics::OwnedVector torqueBand(const InverseDynamicsSolver& solver, double margin) {
+  if (!(margin >= 0.0 && margin < 1.0)) {
+    refuseOption("options.margin", "0 <= margin < 1", std::to_string(margin));
+  }
   if (margin == 0.0) return VectorXd::Zero(solver.jointCount());
+  const auto* deviation = dynamic_cast<const ids::TorqueDeviation*>(&solver);
+  if (deviation == nullptr || !deviation->hasTorqueDeviation()) {
+    refuseOption("options.margin", "0, or a model that states the deviation of its torques",
+                 std::to_string(margin));
+  }
   // The model states the band of 95 %. A normal distribution has the others: erf(x / sqrt 2) = margin.
   double x = 1.0;
   for (int step = 0; step < 60; ++step) {
     x += (margin - std::erf(x / std::sqrt(2.0))) * std::sqrt(M_PI / 2) * std::exp(x * x / 2);
   }
-  return x / 1.959963984540054 *
-         dynamic_cast<const ids::TorqueDeviation&>(solver).getTorqueDeviation();
+  return x / 1.959963984540054 * deviation->getTorqueDeviation();
 }
 
-}  // namespace
+}  // namespace v2
 
 PathDynamics::PathDynamics(const InverseDynamicsSolver& solver, const Path& path, const VectorXd& s,
                            const MotionLimits& limits, double margin)
-    : solver_(solver), path_(path), limits_(limits), s_(s), band_(bandOf(solver, margin)) {
+    : solver_(solver), path_(path), limits_(limits), s_(s), band_(torqueBand(solver, margin)) {
   const Index n = path.jointCount(), count = s.size();
   const bool accelerations = limits.acceleration.size() > 0;
   const Index rows = accelerations ? 2 * n : n;
@@ -156,12 +172,6 @@ Index PathDynamics::weakest(Index k, double& missing) const {
 
 namespace {
 
-[[noreturn]] void refuseOption(const std::string& where, const std::string& expected,
-                               const std::string& got) {
-  throw ids::InvalidParameterValueException(
-      ids::errorText("retime(): " + where, "", expected, got));
-}
-
 void checkLimit(const InverseDynamicsSolver& solver, const char* name,
                 const chain_dynamics::OwnedVector& limit) {
   if (limit.size() == 0) return;
@@ -196,7 +206,6 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
   checkLimit(solver, "jerk", limits.jerk);
   checkLimit(solver, "knee_velocity", limits.knee_velocity);
   checkLimit(solver, "no_load_velocity", limits.no_load_velocity);
-  const auto* deviation = dynamic_cast<const ids::TorqueDeviation*>(&solver);
   const bool kinematics = dynamic_cast<const ids::Kinematics*>(&solver) != nullptr;
   const auto speed = [](double value) { return value >= 0.0 && std::isfinite(value); };
   const struct {
@@ -217,15 +226,11 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
       {speed(options.end_speed), "options.end_speed", "finite, >= 0", options.end_speed},
       {limits.jerk.size() == 0 || options.start_speed + options.end_speed == 0.0, "limits.jerk",
        "none, or start and end at rest", options.start_speed + options.end_speed},
-      {options.margin >= 0.0 && options.margin < 1.0, "options.margin", "0 <= margin < 1",
-       options.margin},
-      {options.margin == 0.0 || (deviation != nullptr && deviation->hasTorqueDeviation()),
-       "options.margin", "0, or a model that states the deviation of its torques", options.margin},
   };
   for (const auto& rule : rules) {
     if (!rule.right) refuseOption(rule.where, rule.expected, std::to_string(rule.got));
   }
-  const VectorXd band = bandOf(solver, options.margin);
+  const chain_dynamics::OwnedVector band = torqueBand(solver, options.margin);
   for (Index j = 0; j < n; ++j) {
     if (band[j] < limits.torque[j]) continue;
     refuseOption("options.margin", "a band narrower than the torque limit",

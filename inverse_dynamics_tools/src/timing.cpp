@@ -120,6 +120,13 @@ void bindTiming(py::module_& module) {
   module.def("retime_path", &retimed, py::arg("solver"), py::arg("path"), py::arg("limits"),
              py::arg("options") = O(), "The fastest motion along a path within limits: TimedPath.");
   module.def(
+      "torque_band",
+      [](const SolverObject& solver, double margin) {
+        return arrayOf(torqueBand(*solverOf(solver), margin));
+      },
+      py::arg("solver"), py::arg("margin"),
+      "(n,) N m, half the width of the band that holds a share of the measured torques; 0: zeros.");
+  module.def(
       "speed_limit",
       [](const SolverObject& solver, const T& trajectory, const L& limits, const O& options) {
         const auto held = solverOf(solver);

@@ -17,6 +17,7 @@ from identified_arms import arm, identification
 from simulation_arms import robots_package
 
 from inverse_dynamics import load_robot, retime
+from inverse_dynamics._core import RetimeOptions
 from inverse_dynamics.control import ComputedTorque, Gains, LawOptions, Status, damping_for
 from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.evaluation.retiming import description_limits
@@ -141,3 +142,13 @@ def test_a_payload_that_the_plan_does_not_know_saturates_torques(robots) -> None
     panda = execute(robots["panda"], WAYPOINTS["panda"], 0.0, 5.0)
     assert panda.longest[5] > 50
     assert 0.3 < panda.error_at_end <= panda.error < 1.0
+
+
+def test_the_band_of_an_identified_model_stays_within_limits(robots) -> None:
+    solver = Arm(robots["ur10"]).solver
+    planned = retime(WAYPOINTS["ur10"], robots["ur10"], options=RetimeOptions(margin=0.95))
+    np.testing.assert_allclose(planned.band, solver.torque_deviation, rtol=1e-9)
+    assert (planned.band > 0.0).all()
+    limit = planned.limits.torque
+    assert (np.abs(planned.efforts) + planned.band <= 1.005 * limit).all()
+    assert np.abs(planned.use).max() == pytest.approx(1.0, abs=0.01)

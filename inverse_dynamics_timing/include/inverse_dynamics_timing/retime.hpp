@@ -103,6 +103,14 @@ struct Retimed {
 Retimed retime(const inverse_dynamics_solver::InverseDynamicsSolver& solver, const Path& path,
                const MotionLimits& limits, const RetimeOptions& options = {});
 
+/// Half the width of the band about computed torques that holds a share of the measured ones, n, N m
+/// (sliders: N): what a margin leaves free. 0: zeros.
+///
+/// @throws inverse_dynamics_solver::InvalidParameterValueException  the margin isn't a share below 1, or
+///   the model states no deviation.
+chain_dynamics::OwnedVector torqueBand(const inverse_dynamics_solver::InverseDynamicsSolver& solver,
+                                       double margin);
+
 /// The greatest speed ds/dt at which limits can be kept for an instant, at each point of a
 /// trajectory's grid: what its speed is compared with. NaN where there is none.
 chain_dynamics::OwnedVector speedLimit(const inverse_dynamics_solver::InverseDynamicsSolver& solver,

@@ -16,7 +16,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retime_path, speed_limit
+from inverse_dynamics._core import (
+    JointPath,
+    MotionLimits,
+    RetimeOptions,
+    retime_path,
+    speed_limit,
+    torque_band,
+)
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.located_yaml import read_mapping
 from inverse_dynamics.data.columns import POSITION
@@ -161,7 +168,7 @@ def retime(
         qd=qd,
         qdd=qdd,
         efforts=efforts,
-        band=_band(arm.solver, options.margin),
+        band=torque_band(arm.solver, options.margin),
         timed=timed,
         speed_limit=speed_limit(arm.solver, timed, limits, options),
         energy=MotionEnergy.of(arm.solver, time, q, qd, efforts),
@@ -272,16 +279,6 @@ def unwrapped(waypoints: Floats, solver: Solver) -> Floats:
     return np.where(turning, np.unwrap(waypoints, axis=0), waypoints)
 
 
-def _band(solver: Solver, margin: float) -> Floats:
-    if margin == 0.0:
-        return np.zeros(len(solver.joint_names))
-    from statistics import NormalDist
-
-    deviation = solver.torque_deviation
-    assert deviation is not None  # retime_path() has refused a margin without one
-    return deviation * NormalDist().inv_cdf((1 + margin) / 2) / 1.959963984540054
-
-
 def _changed(limits: MotionLimits, **changes: Floats) -> MotionLimits:
     """A copy with other limits."""
     names = (*_PER_JOINT, "tip_speed")
@@ -337,7 +334,7 @@ def _by_acceleration(
     solver: Solver, path: JointPath, limits: MotionLimits, options: RetimeOptions
 ) -> tuple[float, TimedPath | None]:
     """The greatest acceleration limit, the same for all joints, under which torques hold, and its motion."""
-    band = _band(solver, options.margin)
+    band = torque_band(solver, options.margin)
     n = len(solver.joint_names)
     own = limits.acceleration if len(limits.acceleration) else np.full(n, np.inf)
     unlimited = _changed(
