@@ -91,13 +91,13 @@ PathDynamics::PathDynamics(const InverseDynamicsSolver& solver, const Path& path
 
   cap_ = std::isfinite(limits.tip_speed) ? capOfTip(solver, q_, dq_, limits.tip_speed)
                                          : VectorXd::Constant(count, kInfinity);
-  const auto limitBy = [&](const chain_dynamics::OwnedVector& velocity) {
+  const auto limit_by = [&](const chain_dynamics::OwnedVector& velocity) {
     for (Index k = 0; k < count && velocity.size() > 0; ++k) {
       cap_[k] = std::min(cap_[k], (velocity.array() / dq_.col(k).array()).square().minCoeff());
     }
   };
-  limitBy(limits.velocity);
-  limitBy(limits.no_load_velocity);
+  limit_by(limits.velocity);
+  limit_by(limits.no_load_velocity);
 }
 
 double PathDynamics::torqueLimit(Index j, double velocity) const {
