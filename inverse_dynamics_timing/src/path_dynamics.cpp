@@ -138,22 +138,34 @@ void PathDynamics::room(Index k, double z, Room& room) const {
   }
 }
 
+bool PathDynamics::turnsBack(Index k) const {
+  const auto here = dq_.col(k).array(), next = dq_.col(k + 1).array();
+  return (here.abs().min(next.abs()) < (next - here).abs()).any();
+}
+
 double PathDynamics::excess(Index k, double x, double y) const {
+  if (!turnsBack(k)) return excessAt(k, x, y, 0.5);
+  double most = 0.0;
+  for (const double share : {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875}) {
+    most = std::max(most, excessAt(k, x, y, share));
+  }
+  return most;
+}
+
+double PathDynamics::excessAt(Index k, double x, double y, double share) const {
   const Index n = g_.rows();
-  const double s = (s_[k] + s_[k + 1]) / 2, z = (x + y) / 2,
-               u = (y - x) / (2 * (s_[k + 1] - s_[k]));
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 64, 1> q(n), qd(n), ddq(n), f(n);
-  path_.evaluate(s, q, qd, ddq);
+  const double length = s_[k + 1] - s_[k], z = x + share * (y - x), u = (y - x) / (2 * length);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 64, 1> q(n), qd(n), qdd(n), tau(n);
+  path_.evaluate(s_[k] + share * length, q, qd, qdd);
+  qdd = u * qd + z * qdd;
   qd *= std::sqrt(z);
-  solver_.getFrictionVector(q, qd, f);
+  solver_.getTorques(q, qd, qdd, tau);
   double most = 0.0;
   if (limits_.velocity.size() > 0) {
     most = (qd.array().abs() / limits_.velocity.array()).maxCoeff() - 1.0;
   }
   for (Index j = 0; j < n; ++j) {
-    const double tau = (a_(j, k) + a_(j, k + 1)) / 2 * u + (b_(j, k) + b_(j, k + 1)) / 2 * z +
-                       (g_(j, k) + g_(j, k + 1)) / 2 + f[j];
-    most = std::max(most, (std::abs(tau) - torqueLimit(j, qd[j])) / limits_.torque[j]);
+    most = std::max(most, (std::abs(tau[j]) - torqueLimit(j, qd[j])) / limits_.torque[j]);
   }
   return most;
 }

@@ -40,15 +40,20 @@ class PathDynamics {
   void room(Eigen::Index k, double z, Room& room) const;
   Room emptyRoom() const;
 
-  /// How far a torque or a velocity is above its limit in the middle of interval k, as a share of the
-  /// limit, with squared speeds x and y at its ends. Friction is that of the middle, the rest of the
-  /// torque the mean of the ends.
+  /// How far a torque or a velocity is above its limit within interval k, as a share of the limit, with
+  /// squared speeds x and y at its ends: in its middle, or where a joint turns back, and friction steps,
+  /// at seven places.
   double excess(Eigen::Index k, double x, double y) const;
 
   /// The joint that lacks most torque to stand still at point k, and how much; -1: none lacks any.
   Eigen::Index weakest(Eigen::Index k, double& missing) const;
 
  private:
+  /// Whether a joint does in interval k or right beside it.
+  bool turnsBack(Eigen::Index k) const;
+  /// At this share of the interval.
+  double excessAt(Eigen::Index k, double x, double y, double share) const;
+
   double torqueLimit(Eigen::Index j, double velocity) const;
 
   const InverseDynamicsSolver& solver_;
