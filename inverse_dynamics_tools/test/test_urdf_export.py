@@ -54,27 +54,43 @@ def test_the_rest_of_the_file_stays(text):
     assert without_change(text) == without_change(before)
 
 
+def with_friction(found, **changes):
+    """The identification with other numbers of friction."""
+    friction = tuple({**law, **changes} for law in found.model.friction)
+    return replace(found, model=replace(found.model, friction=friction))
+
+
+def dynamics(text):
+    """(n, 2) damping and friction."""
+    joints = {joint.get("name"): joint for joint in ElementTree.fromstring(text).findall("joint")}
+    elements = [joints[name].find("dynamics") for name in JOINTS]
+    return np.array([[float(e.get("damping")), float(e.get("friction"))] for e in elements])
+
+
 def test_friction_is_in_dynamics_and_the_rest_is_told(found, text):
-    for joint in ElementTree.fromstring(text).findall("joint"):
-        if joint.get("name") in JOINTS:
-            figures = found.model.friction[JOINTS.index(joint.get("name"))]
-            assert float(joint.find("dynamics").get("damping")) == figures["fv"]
-            assert float(joint.find("dynamics").get("friction")) == figures["fc"]
+    sharp = dynamics(urdf_text(with_friction(found, width=1e-6)))
+    np.testing.assert_allclose(sharp, [[f["fv"], f["fc"]] for f in found.model.friction], rtol=1e-6)
     assert "Not held here: the width of the step; offsets." in text
 
 
-def test_friction_that_grows_with_load_is_that_of_the_mean_load(found):
-    loaded = [{**figures, "fl": 0.1} for figures in found.model.friction]
-    model = replace(found.model, friction=tuple(loaded))
-    text = urdf_text(replace(found, model=model))
-    robot = ElementTree.fromstring(text)
-    joint = next(j for j in robot.findall("joint") if j.get("name") == JOINTS[1])
-    solver = Solver(RIGID_BODY, urdf=text, root="base_link", tip="tool0")
-    q = np.concatenate([block.q for block in found.blocks])
-    load = abs(solver.gravity_vector(q)[:, 1]).mean()
-    expected = found.model.friction[1]["fc"] + 0.1 * load
-    assert float(joint.find("dynamics").get("friction")) == pytest.approx(expected, rel=1e-9)
-    assert "the step is that of the mean load" in text
+def test_friction_is_the_nearest_to_the_law(found):
+    """To one that grows with load and falls with velocity, and never pushes."""
+    other = with_friction(found, fl=0.1, fs=20.0, vs=0.2)
+    written = dynamics(urdf_text(other))
+    assert written.min() >= 0
+    q, qd = (np.concatenate([getattr(b, key) for b in found.blocks]) for key in ("q", "qd"))
+    solver = Solver(RIGID_BODY, urdf=urdf_text(found), root="base_link", tip="tool0")
+    load = abs(solver.gravity_vector(q))
+    for j, law in enumerate(other.model.friction):
+        v = qd[:, j]
+        height = law["fc"] + 0.1 * load[:, j] + 20.0 * np.exp(-((v / 0.2) ** 2))
+        torque = law["fv"] * v + height * np.tanh(v / law["width"])
+        error = np.std(torque - written[j] @ [v, np.sign(v)])
+        for changed in 1.05 * written[j] * np.eye(2) + 0.95 * written[j] * (1 - np.eye(2)):
+            assert error < np.std(torque - changed @ [v, np.sign(v)])
+        assert error < np.std(
+            torque - law["fv"] * v - (law["fc"] + 0.1 * load[:, j].mean()) * np.sign(v)
+        )
 
 
 def test_what_is_fixed_to_a_link_is_part_of_it(found, tmp_path):
@@ -90,7 +106,7 @@ def test_what_is_fixed_to_a_link_is_part_of_it(found, tmp_path):
         torque_deviation=found.model.torque_deviation[two],
         seen=found.model.seen[:, two],
     )
-    blocks = tuple(replace(block, q=block.q[:, two]) for block in found.blocks)
+    blocks = tuple(replace(block, q=block.q[:, two], qd=block.qd[:, two]) for block in found.blocks)
     robot = Robot("oblique", "", urdf, RIGID_BODY, urdf=urdf)
     oblique = replace(found, robot=robot, joints=("one", "two"), model=model, blocks=blocks)
     again = urdf_text(oblique)
@@ -108,14 +124,23 @@ def test_what_is_fixed_to_a_link_is_part_of_it(found, tmp_path):
 
 def test_mujoco_takes_both(found):
     found = replace(found, model=arm())  # the ridged fit needn't be a body's
-    text = urdf_text(found)
     mujoco = pytest.importorskip("mujoco")
-    spec = mujoco.MjSpec.from_string(mjcf_text(found))
-    default = spec.find_default(JOINTS[2])
-    figures = found.model.friction[2]
-    assert np.ravel(default.joint.damping)[0] == figures["fv"]
-    assert default.joint.frictionloss == figures["fc"]
-    assert default.joint.armature == found.model.rotor_inertia[2]
-    model = mujoco.MjModel.from_xml_string(text)
-    assert model.nv == len(JOINTS)
-    np.testing.assert_allclose(model.dof_frictionloss, [f["fc"] for f in found.model.friction])
+    assert mujoco.MjModel.from_xml_string(urdf_text(found)).nv == len(JOINTS)
+    model = mujoco.MjModel.from_xml_string(mjcf_text(found))
+    assert model.nu == model.nv == len(JOINTS)
+    np.testing.assert_allclose(model.dof_armature, found.model.rotor_inertia)
+    np.testing.assert_allclose(model.dof_frictionloss, dynamics(urdf_text(found))[:, 1])
+    np.testing.assert_allclose(
+        np.ravel(model.dof_damping)[: model.nv], dynamics(urdf_text(found))[:, 0]
+    )
+    data = mujoco.MjData(model)
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_LIMIT)
+    model.dof_damping[:] = model.dof_frictionloss[:] = 0.0
+    states = np.random.default_rng(1).uniform(-2.0, 2.0, (3, 5, len(JOINTS)))
+    rigid = engine().regressor(*states) @ found.model.parameters.ravel()
+    for q, qd, qdd, expected in zip(
+        *states, rigid + found.model.rotor_inertia * states[2], strict=True
+    ):
+        data.qpos[:], data.qvel[:], data.qacc[:] = q, qd, qdd
+        mujoco.mj_inverse(model, data)
+        np.testing.assert_allclose(data.qfrc_inverse, expected, atol=1e-9 * abs(expected).max())

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An identified model as a URDF, and its friction as MJCF defaults.
+"""An identified model as a URDF, and as an MJCF.
 
     text = urdf_text(found)
 
 The description that was started from, with the inertia of the moving links replaced. A link of the model is a
 link of the description with all that is fixed to it: its <inertial> becomes that of the whole, and what is
-fixed to it has none any more. Friction goes into <dynamics> as far as that can hold it; a
-comment says what it can't. Everything else stays: comments, shapes, limits, order.
+fixed to it has none any more. Everything else stays: comments, shapes, limits, order. The MJCF has the
+chain alone. Friction goes into both as far as they can hold it; a comment says what they can't.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import re
 import xml.etree.ElementTree as ElementTree
 from io import StringIO
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -27,12 +26,13 @@ from inverse_dynamics.robot.descriptions import parse_description, read_descript
 from inverse_dynamics.robot.link_parameters import about_center, turned
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.identification.result import Identification
+    from inverse_dynamics.robot.chain_geometry import JointGeometry
 
-_LOAD_STATES = 2000  # that the mean load of a joint is taken over
+_STATES = 2000  # of the recordings, over which the nearest friction is found
 _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -57,24 +57,69 @@ def urdf_text(found: Identification) -> str:
 
 
 def mjcf_text(found: Identification) -> str:
-    """MJCF <default> classes, one per joint: armature, damping and frictionloss."""
-    lines = [
-        "<!-- SPDX-License-Identifier: Apache-2.0 -->",
-        f"<!-- {_comment(found, {})} -->",
-        "<mujoco>",
-        "  <default>",
-    ]
-    for j, (name, (damping, friction)) in enumerate(
-        zip(found.joints, _damping_and_friction(found), strict=True)
+    """A MuJoCo model of the chain, with a motor at each joint. Raises RobotError.
+
+    Joints have armature, damping and frictionloss by a <default> class each, for use in another model too.
+    """
+    geometry = chain_geometry(read_description(urdf_of(found)), found.robot.root, found.joints)
+    mujoco = ElementTree.Element("mujoco", model=found.robot.name)
+    mujoco.append(ElementTree.Comment(f" {_comment(found, {})} "))
+    ElementTree.SubElement(mujoco, "compiler", angle="radian", eulerseq="XYZ")
+    option = ElementTree.SubElement(mujoco, "option", integrator="implicitfast")
+    if found.robot.gravity is not None:  # MuJoCo's own points down too
+        option.set("gravity", _numbers(found.robot.gravity))
+    defaults = ElementTree.SubElement(mujoco, "default")
+    body = ElementTree.SubElement(mujoco, "worldbody")
+    motors = ElementTree.SubElement(mujoco, "actuator")
+    for joint, parameters, rotor, (damping, friction) in zip(
+        geometry,
+        found.model.parameters,
+        found.model.rotor_inertia,
+        _damping_and_friction(found),
+        strict=True,
     ):
-        armature = yaml_number(found.model.rotor_inertia[j])
-        lines += [
-            f"    <default class={quoteattr(name)}>",
-            f'      <joint armature="{armature}" damping="{yaml_number(damping)}" '
-            f'frictionloss="{yaml_number(friction)}"/>',
-            "    </default>",
-        ]
-    return "\n".join([*lines, "  </default>", "</mujoco>", ""])
+        values = {"armature": rotor, "damping": damping, "frictionloss": friction}
+        ElementTree.SubElement(
+            ElementTree.SubElement(defaults, "default", {"class": joint.name}),
+            "joint",
+            {key: yaml_number(value) for key, value in values.items()},
+        )
+        body = _mjcf_body(body, joint, turned(parameters, joint.rotation_from_z))
+        ElementTree.SubElement(motors, "motor", name=joint.name, joint=joint.name)
+    ElementTree.indent(mujoco)
+    license_line = "<!-- SPDX-License-Identifier: Apache-2.0 -->"
+    return f"{license_line}\n{ElementTree.tostring(mujoco, encoding='unicode')}\n"
+
+
+def _mjcf_body(
+    parent: ElementTree.Element, joint: JointGeometry, parameters: Floats
+) -> ElementTree.Element:
+    """The link that a joint moves."""
+    body = ElementTree.SubElement(
+        parent, "body", name=joint.link, pos=_numbers(joint.xyz), euler=_numbers(joint.rpy)
+    )
+    center, tensor = about_center(parameters)
+    six = tensor[(0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)]
+    ElementTree.SubElement(
+        body,
+        "inertial",
+        mass=yaml_number(parameters[0]),
+        pos=_numbers(center),
+        fullinertia=_numbers(six),
+    )
+    ElementTree.SubElement(
+        body,
+        "joint",
+        {"name": joint.name, "class": joint.name, "axis": _numbers(joint.axis)},
+        type="slide" if joint.type == "prismatic" else "hinge",
+    )
+    if {"lower", "upper"} <= joint.limits.keys():
+        body[-1].set("range", _numbers((joint.limits["lower"], joint.limits["upper"])))
+    return body
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return " ".join(yaml_number(float(value)) for value in values)
 
 
 def _around_root(text: str) -> tuple[str, str, str]:
@@ -158,16 +203,25 @@ def _set_dynamics(joint: ElementTree.Element, damping: float, friction: float) -
 
 
 def _damping_and_friction(found: Identification) -> list[tuple[float, float]]:
-    """fv, and the height of the step at the mean load of the recordings."""
-    q = np.concatenate([block.q for block in found.blocks])
-    q = q[:: max(1, len(q) // _LOAD_STATES)]
-    still = np.zeros_like(q)
-    gravity = identified_model(found).regressor(q, still, still) @ found.model.parameters.ravel()
-    load = np.abs(gravity).mean(axis=0)
+    """Of the law `damping qd + friction sign(qd)` that is nearest to the model's over the recorded states."""
+    q, qd = (np.concatenate([getattr(block, key) for block in found.blocks]) for key in ("q", "qd"))
+    every = slice(None, None, max(1, len(q) // _STATES))
+    q, qd, still = q[every], qd[every], np.zeros_like(q[every])
+    engine = identified_model(found)
+    law = engine.torques(q, qd, still) - engine.regressor(q, qd, still) @ engine.parameters
     return [
-        (float(law["fv"]), float(law["fc"] + law.get("fl", 0.0) * load[j]))
-        for j, law in enumerate(found.model.friction)
+        _nearest(np.column_stack((v, np.sign(v))), torque - offset)
+        for v, torque, offset in zip(qd.T, law.T, found.offsets, strict=True)
     ]
+
+
+def _nearest(columns: Floats, torque: Floats) -> tuple[float, float]:
+    """Least squares with two coefficients that aren't negative."""
+    both = np.linalg.lstsq(columns, torque, rcond=None)[0]
+    if both.min() < 0:
+        alone = columns.T @ torque / np.maximum((columns**2).sum(axis=0), np.finfo(float).tiny)
+        both = np.where(np.arange(2) == both.argmax(), np.maximum(alone, 0.0), 0.0)
+    return float(both[0]), float(both[1])
 
 
 def _comment(found: Identification, lumped: Mapping[str, Sequence[str]]) -> str:
@@ -178,7 +232,7 @@ def _comment(found: Identification, lumped: Mapping[str, Sequence[str]]) -> str:
             ("offsets", bool(np.any(found.offsets))),
             ("the shift of the step", bool(np.any(found.shifts))),
             (
-                "that friction grows with load (the step is that of the mean load)",
+                "that friction grows with load",
                 any(law.get("fl") for law in found.model.friction),
             ),
             (
@@ -192,6 +246,7 @@ def _comment(found: Identification, lumped: Mapping[str, Sequence[str]]) -> str:
     sentences = [
         f"Inertia and friction by `ids identify` from {', '.join(p.name for p in found.recordings)}.",
         "Masses of single links are mostly those of the description before: torques don't determine them.",
+        "Damping and friction are those nearest to the identified law over the recorded motion.",
         f"Not held here: {'; '.join(left_out)}.",
     ]
     if lumped:

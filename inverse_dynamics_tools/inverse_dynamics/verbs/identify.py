@@ -113,7 +113,7 @@ def declare(options: Options) -> None:
     )
     options.add(
         "--mjcf-out FILE",
-        "also write MuJoCo <default> classes of the joints: armature, damping, frictionloss",
+        "also write a MuJoCo model of the chain",
         Path,
     )
     options.overrides(*CHAIN, *RECORDING)
