@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hooks of MkDocs: what the pages of docs/ need to be pages of a site, too.
 
-Pages link to files beyond docs/, as on GitHub. On the site such a link leads to Doxygen's page of a public header, or to
-the repository that DOCS_REPOSITORY_URL names, or is plain text.
+Pages link to files beyond docs/, as on GitHub. On the site such a link leads to Doxygen's page of a header, to the
+repository that DOCS_REPOSITORY_URL names, or is plain text.
 """
 
 from __future__ import annotations

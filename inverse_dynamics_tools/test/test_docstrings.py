@@ -40,15 +40,16 @@ def test_computing_methods_have_sections_and_examples():
                 assert f"{name}.{method}" in shown
                 for section in ("Parameters", "Returns", "Examples"):
                     assert f"\n{section}\n{'-' * len(section)}\n" in function.__doc__
-    assert {
-        "Solver",
-        "FastModel",
-        "Robot",
-        "Evaluation",
-        "available_solvers",
-        "load_robot",
-    } <= shown
-    assert {"robot_names", "evaluate", "identify"} <= shown
+    assert {"Solver", "FastModel", "Robot", "Evaluation"} <= shown
+    assert {"available_solvers", "load_robot", "robot_names"} <= shown
+    assert {"evaluate", "evaluate_many", "identify", "retime"} <= shown
+
+
+def test_functions_have_sections():
+    for name, function in PUBLIC.items():
+        if inspect.isroutine(function) and len(inspect.signature(function).parameters) > 2:
+            for section in ("Parameters", "Raises"):
+                assert f"\n{section}\n{'-' * len(section)}\n" in inspect.getdoc(function), name
 
 
 def test_bound_functions_have_signatures_with_types():

@@ -69,13 +69,34 @@ def read_joint_log(
     clock: Clock = "auto",
     progress: Progress = no_progress,
 ) -> JointLog:
-    """Joint states of one topic, by the rules of inverse_dynamics_evaluation/sample_table.hpp.
+    """Joint states of one topic of a recording.
 
-    path: directory with metadata.yaml, or a .db3 or .mcap file. joints: names, in the order wanted;
-    none: those of the first message. topic: none: the only one with joint states. clock: which
-    stamp is the time.
+    Parameters
+    ----------
+    path
+        A directory with metadata.yaml, or a .db3 or .mcap file.
+    joints
+        Names, in the order wanted; by default those of the first message.
+    topic
+        By default the only one with joint states.
+    clock
+        Which stamp is the time.
 
-    Raises BagError.
+    Raises
+    ------
+    UserError
+        BagError.
+
+    Examples
+    --------
+    >>> from inverse_dynamics import read_joint_log, write_joint_logs
+    >>> from inverse_dynamics.results.demo import stored_recording
+    >>> log = read_joint_log(stored_recording("ur10_simulated"), ["elbow_joint"])
+    >>> log.q.shape[1], log.storage  # rad, one column
+    (1, 'mcap')
+    >>> write_joint_logs("copy", {"/joint_states": log})
+    >>> bool((read_joint_log("copy").q == log.q).all())
+    True
     """
     check_clock(clock)
     opened = open_joint_states(path, topic)
@@ -130,11 +151,21 @@ def write_joint_logs(
     storage: Storage = "sqlite3",
     progress: Progress = no_progress,
 ) -> None:
-    """Write joint states to a new recording, in the current format of rosbag2.
+    """Write joint states to a new recording, in the current format of rosbag2. Both stamps are kept.
 
-    topics: topic to joint states; several are interleaved message by message. Both stamps are kept.
+    Parameters
+    ----------
+    path
+        Of the new directory.
+    topics
+        Topic to joint states; several are interleaved message by message.
+    storage
+        "sqlite3" or "mcap".
 
-    Raises BagError if the path exists or can't be written.
+    Raises
+    ------
+    UserError
+        BagError: the path exists or can't be written.
     """
     check_storage(storage)
     logs = list(topics.values())

@@ -140,12 +140,26 @@ def fetch_recordings(
     say: Callable[[str], None] = lambda text: None,
     progress: Progress = no_progress,
 ) -> list[Path]:
-    """Fetch those of public_recordings() that aren't there; gives the directories of all of them.
+    """Fetch the public recordings that the directory lacks, each whole or not at all.
 
-    source: URL or directory that holds the repository's files instead of the public one. overwrite:
-    replace recordings that aren't as published. say: called with a sentence before each step.
+    Parameters
+    ----------
+    source
+        URL or directory that holds the repository's files instead of the public one.
+    overwrite
+        Replace recordings that aren't as published.
+    say
+        Called with a sentence before each step.
 
-    Each recording is written whole or not at all. Raises RecordingsError, OutputError.
+    Returns
+    -------
+    list of Path
+        Directories of all public recordings.
+
+    Raises
+    ------
+    UserError
+        RecordingsError, OutputError.
     """
     table = public_recordings()
     places = {recording: directory / "bags" / recording.name for recording in table.recordings}

@@ -62,13 +62,33 @@ def read_recording(
 ) -> JointLog:
     """Samples of a motion: time, positions, velocities, efforts, accelerations where there are any.
 
-    path: a table (.csv, .tsv, .txt, .parquet, .npz, .npy, .mat), arrays by name, else a recording of ROS.
-    joints: names, in the order wanted; none: those of the recording. topic, of a bag, or several joined by +;
-    none: usual_topic if it is there, else the only one of joint states, else the only one of trajectories
-    if there are no joint states, but other ones or several together if these have all the joints alone.
-    clock: which stamp of messages is the time. form: what names don't say.
+    Parameters
+    ----------
+    path
+        A table (.csv, .tsv, .txt, .parquet, .npz, .npy, .mat), arrays by name, else a recording of ROS.
+    joints
+        Names, in the order wanted; by default those of the recording.
+    topic
+        Of a bag, or several joined by +. By default usual_topic if it is there, else the only one of joint
+        states, else the only one of trajectories if there are no joint states, but other ones or several
+        together if these have all the joints alone.
+    clock
+        Which stamp of messages is the time.
+    form
+        What names don't say.
 
-    Raises BagError.
+    Raises
+    ------
+    UserError
+        BagError.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from inverse_dynamics import read_recording
+    >>> table = {"t": np.arange(20) / 100, "q": np.zeros((20, 3)), "tau": np.ones((20, 3))}  # s, rad, N m
+    >>> read_recording(table).effort.shape
+    (20, 3)
     """
     motion = open_motion(
         path,

@@ -125,14 +125,37 @@ def retime(
 ) -> Retimed:
     """Time a path so that it takes as little as the limits allow.
 
-    path: waypoints (m, n) [rad]; a file of them: trajectory_msgs/JointTrajectory of a recording, a
-    table, or a YAML file with `joints` and `positions`, times ignored; or a JointPath. limits:
-    None: those of the robot description. deviation: straight lines whose corners the path passes by
-    at most this distance [rad]; None: a cubic spline through all waypoints. stops: numbers of
-    waypoints, from 0, to stand still at. weight: s/J; above 0 the motion is slower and minimises, about,
-    duration + weight * energy [docs/retime.md]. rate: of the samples, Hz.
+    Parameters
+    ----------
+    path
+        Waypoints (m, n) [rad]; a file of them: trajectory_msgs/JointTrajectory of a recording, a table, or a
+        YAML file with `joints` and `positions`, times ignored; or a JointPath.
+    robot
+        As evaluate() takes it.
+    limits
+        By default those of the robot description.
+    deviation
+        Straight lines whose corners the path passes by at most this distance [rad]; by default a cubic
+        spline through all waypoints.
+    stops
+        Numbers of waypoints, from 0, to stand still at.
+    weight
+        s/J. Above 0 the motion is slower and minimises about duration + weight * energy.
+    rate
+        Of the samples, Hz.
 
-    Raises UserError: BagError, RobotError, SolverError; the path leaves a joint's range, or can't be held.
+    Raises
+    ------
+    UserError
+        BagError, RobotError, SolverError; the path leaves a joint's range, or can't be held.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from inverse_dynamics import retime
+    >>> fast = retime(np.array([[0.0] * 6, [0.5] * 6]), "ur10_simulated")
+    >>> bool(fast.duration < 2), fast.efforts.shape[1]  # s
+    (True, 6)
     """
     if not isinstance(robot, Robot):
         robot = load_robot(robot)

@@ -112,11 +112,19 @@ def trajectory_torques(
 ) -> TrajectoryTorques:
     """Compute the torques of each point of each trajectory.
 
-    path: rosbag2 recording of trajectory_msgs/JointTrajectory, or a table as table_logs.py has it,
-    efforts not needed. robot: as evaluate() takes it. topic: none: the
-    only one with trajectories.
+    Parameters
+    ----------
+    path
+        A recording of trajectory_msgs/JointTrajectory, or a table; efforts aren't needed.
+    robot
+        As evaluate() takes it.
+    topic
+        By default the only one with trajectories.
 
-    Raises UserError: BagError, RobotError, SolverError.
+    Raises
+    ------
+    UserError
+        BagError, RobotError, SolverError.
     """
     from inverse_dynamics import _core
 

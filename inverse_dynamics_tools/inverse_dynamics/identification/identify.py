@@ -81,26 +81,43 @@ def identify(
     progress: Progress = no_progress,
     **options: Any,
 ) -> Identification:
-    """A physically consistent model with friction, from recordings of a moving arm.
+    """Identify a physically consistent model with friction from recordings of a moving arm.
 
-    robot: as in evaluate(); its description is the prior, its model, if it has one, is compared
-    with. blocks: how many the recordings are cut into altogether, at least three; none: BLOCKS, or
-    fewer where they would be shorter than 2.5 s. known_payloads: further recordings of motor currents,
-    each with a load as the parameters payload.* of solvers: they determine the drive gains. accept: kinds of
-    refusals.REFUSED that are taken as they are, and not refused. options: others of evaluate(), as effort_is,
-    start, end.
+    Parameters
+    ----------
+    recordings
+        As evaluate() takes them; cut into blocks, each predicted by models of the others.
+    robot
+        As in evaluate(). Its description is the prior; its model, if it has one, is compared with.
+    blocks
+        At least 3; by default BLOCKS, or fewer where they would be shorter than 2.5 s.
+    known_payloads
+        Further recordings of motor currents, each with a load as the parameters payload.* of solvers.
+        They determine the drive gains.
+    accept
+        Kinds of refusals.REFUSED that are accepted.
+    options
+        Others of evaluate(), such as effort_is, start, end.
 
-    Raises UserError: those of evaluate(), IdentificationError.
+    Raises
+    ------
+    UserError
+        Those of evaluate(), IdentificationError.
 
     Examples
     --------
-    >>> from inverse_dynamics import UserError, identify
+    >>> from dataclasses import replace
+    >>> import numpy as np
+    >>> from inverse_dynamics import identify, read_joint_log, write_joint_logs
     >>> from inverse_dynamics.results.demo import stored_recording
-    >>> try:  # a simulated arm is its description: nothing to gain
-    ...     found = identify([stored_recording("ur10_simulated")], "ur10_simulated")
-    ... except UserError as error:
-    ...     print("no gain over the present model" in str(error))
-    True
+    >>> log = read_joint_log(stored_recording("ur10_simulated"))
+    >>> rough = replace(log, effort=log.effort + 5 * np.tanh(log.qd / 0.05))  # N m of friction
+    >>> write_joint_logs("rough", {"/joint_states": rough})
+    >>> found = identify(["rough"], "ur10_simulated")
+    >>> bool(found.held_out["urdf"].min() > 4), bool(found.held_out["identified"].max() < 0.1)  # N m
+    (True, True)
+    >>> found.solver().joint_names[2]
+    'elbow_joint'
     """
     begin = time.perf_counter()
     if not isinstance(robot, Robot):

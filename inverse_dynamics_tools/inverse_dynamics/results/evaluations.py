@@ -64,9 +64,21 @@ def write_evaluation(
 ) -> None:
     """Write all files of an evaluation, or none of them.
 
-    overwrite: replace an older result. storage: sqlite3 or mcap; None: that of the recording.
-    figures: of "png", "svg", "pdf"; none of them: no figure.
-    Raises OutputError, BagError.
+    Parameters
+    ----------
+    directory
+        To write.
+    overwrite
+        Replace an older result.
+    storage
+        "sqlite3" or "mcap"; by default that of the recording.
+    figures
+        Of "png", "svg", "pdf"; none of them: no figure.
+
+    Raises
+    ------
+    UserError
+        OutputError, BagError.
     """
     check_writing(storage, figures)
     inputs = (evaluation.bag, *evaluation.robot.files)

@@ -88,10 +88,25 @@ def excite(
 ) -> ExcitationResult:
     """Search for the motion after which torques of the robot are predicted best.
 
-    robot: as evaluate() takes it, with a description; given: recordings that will be used too.
-    The same arguments give the same motion. say: called with a sentence before what takes long.
+    The same arguments give the same motion.
 
-    Raises UserError: SimulationError, RobotError, BagError, EvaluationError.
+    Parameters
+    ----------
+    robot
+        As evaluate() takes it, with a description.
+    given
+        Recordings that will be used too.
+    options
+        Purpose and constraints of the motion.
+    seed
+        Of the random start.
+    say
+        Called with a sentence before what takes long.
+
+    Raises
+    ------
+    UserError
+        SimulationError, RobotError, BagError, EvaluationError.
     """
     robot = robot if isinstance(robot, Robot) else load_robot(robot)
     options = options or ExcitationOptions()
@@ -189,7 +204,19 @@ def write_excitation(
 ) -> None:
     """Write the motion for `ids simulate` and the message to send, both or none.
 
-    step: s between the message's points; None: at the waypoints. Raises OutputError.
+    Parameters
+    ----------
+    out
+        The file of the motion, .yaml; the message goes beside it.
+    overwrite
+        Replace older ones.
+    step
+        s between the message's points; by default at the waypoints.
+
+    Raises
+    ------
+    UserError
+        OutputError.
     """
     out = Path(out)
     check_output(out, result.robot, (), overwrite=overwrite)

@@ -39,12 +39,33 @@ def export_series(
     overwrite: bool = False,
     progress: Progress = no_progress,
 ) -> None:
-    """Write the table, as CSV or Parquet by the file's ending, or nothing.
+    """Write the samples as a table, CSV or Parquet by the file's ending, or nothing.
 
-    recording: a name that a first column of that title repeats, so that the tables of several
-    recordings are one; "": no such column.
-    Raises OutputError: the ending is another one, the file is there or can't be written, pyarrow isn't
-    installed.
+    Parameters
+    ----------
+    file
+        To write, .csv or .parquet.
+    recording
+        A name that a first column of that title repeats, so that the tables of several recordings are
+        one; "": no such column.
+    overwrite
+        Replace an older file.
+
+    Raises
+    ------
+    UserError
+        OutputError: the ending is another one, the file is there or can't be written, pyarrow isn't
+        installed.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from inverse_dynamics import evaluate, export_series
+    >>> from inverse_dynamics.results.demo import stored_recording
+    >>> result = evaluate(stored_recording("ur10_simulated"), "ur10_simulated")
+    >>> export_series(result, Path("samples.csv"))
+    >>> Path("samples.csv").read_text()[:32]
+    'time,position.shoulder_pan_joint'
     """
     file_format = file.suffix.removeprefix(".").lower()
     if file_format not in ("csv", "parquet"):

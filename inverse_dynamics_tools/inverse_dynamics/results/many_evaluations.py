@@ -125,15 +125,40 @@ def evaluate_many(
 ) -> ManyEvaluations:
     """Evaluate recordings of one robot, each in a process of its own, into one directory.
 
-    recordings: as evaluate() takes them, or directories that hold some. out: the directory; it is
-    written whole or not at all. jobs: how many at the same time; None: one per core. scheduler: address
-    of a Dask scheduler, whose workers do it instead: they need this software, and see recordings and
-    `out` by the same paths. storage, figures: see write_evaluation(); figures: none of them, no page of
-    each recording either, nor of one with more than a million samples. parquet: write
-    NAME/series.parquet too. options: those of evaluate().
-
     A recording that fails, or whose process dies, is among `failures`; the others are finished.
-    Raises UserError: arguments, robot or output can't be used, or every recording fails.
+
+    Parameters
+    ----------
+    recordings
+        As evaluate() takes them, or directories that hold some.
+    robot, options
+        As in evaluate().
+    out
+        The directory; written whole or not at all.
+    jobs
+        How many at the same time; by default one per core.
+    scheduler
+        Address of a Dask scheduler, whose workers do it instead. They need this software, and see
+        recordings and `out` by the same paths.
+    overwrite, storage, figures
+        As in write_evaluation(). Without figures no page of a recording either, nor of one with more
+        than a million samples.
+    parquet
+        Write NAME/series.parquet too.
+
+    Raises
+    ------
+    UserError
+        Arguments, robot or output can't be used, or every recording fails.
+
+    Examples
+    --------
+    >>> from inverse_dynamics import evaluate_many
+    >>> from inverse_dynamics.results.demo import stored_recording
+    >>> recording = stored_recording("ur10_simulated")
+    >>> many = evaluate_many([recording], "ur10_simulated", "results", figures=())
+    >>> len(many.summaries), many.failures
+    (1, ())
     """
     given = [recordings] if isinstance(recordings, (str, os.PathLike)) else list(recordings)
     names = named_recordings(given, taken=OWN_FILES)

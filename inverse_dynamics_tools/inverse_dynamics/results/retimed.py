@@ -60,7 +60,22 @@ def write_retimed(
     storage: Storage = "sqlite3",
     inputs: Iterable[Path | None] = (),
 ) -> None:
-    """Write all files, or none. overwrite: replace an older result. Raises OutputError, BagError."""
+    """Write the recording, table, figure and page of a timed path, or none of them.
+
+    Parameters
+    ----------
+    overwrite
+        Replace an older result.
+    figures, storage
+        As in write_evaluation().
+    inputs
+        Files that must not be overwritten.
+
+    Raises
+    ------
+    UserError
+        OutputError, BagError.
+    """
     out = Path(out)
     check_output(out, figures, overwrite=overwrite, inputs=inputs)
     with written_whole(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as directory:

@@ -60,14 +60,27 @@ def write_trajectory_torques(
     overwrite: bool = False,
     progress: Progress = no_progress,
 ) -> tuple[str, ...]:
-    """Write a copy of the file with the efforts filled in, whole or not at all; gives notes.
+    """Write a copy of the file with the efforts filled in, whole or not at all.
 
-    out: of the same kind as the file: a directory for a recording, a file for a table. Other
-    topics of a recording are copied, further columns of a table too; torques.json beside a
-    recording says how efforts were computed, and each joint's load. overwrite: replace an older
-    result.
+    Other topics of a recording are copied, further columns of a table too; torques.json beside a
+    recording says how efforts were computed, and each joint's load.
 
-    Raises OutputError, BagError.
+    Parameters
+    ----------
+    out
+        Of the same kind as the file: a directory for a recording, a file for a table.
+    overwrite
+        Replace an older result.
+
+    Returns
+    -------
+    tuple of str
+        Notes.
+
+    Raises
+    ------
+    UserError
+        OutputError, BagError.
     """
     out = Path(out)
     check_output(result.path, out, result.robot, overwrite=overwrite)
