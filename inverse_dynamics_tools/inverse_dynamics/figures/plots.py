@@ -195,10 +195,15 @@ def write_legend(figure: Figure, handles: Sequence[Artist], left: float, inches:
 def shade(
     axes: Axes, spans: Sequence[tuple[float, float]], least: float, style: dict[str, Any]
 ) -> None:
-    """Spans of time [s], each as wide as that part of the axis at least, so that it can be seen."""
+    """Spans of time [s], each as wide as that part of the axis at least, so that it can be seen.
+
+    A few samples that were left out are a mark on the axis: many of them would look like a grid.
+    """
     low, high = axes.get_xlim()
+    width = least * (high - low)
     for begin, end in spans:
-        axes.axvspan(begin, max(end, begin + least * (high - low)), **style)
+        top = 0.08 if style is LEFT_OUT and end - begin < width else 1.0
+        axes.axvspan(begin, max(end, begin + width), ymax=top, **style)
 
 
 def _panels(figure: Figure, n: int, *, top: float, bottom: float) -> NDArray[np.object_]:
@@ -243,7 +248,7 @@ def _draw_errors(
     of_joint = [run.errors[j] for run in runs]
     title = f"RMSE {' / '.join(f'{e.rmse:.3g}' for e in of_joint)} {of_joint[0].unit}"
     if len(runs) == 1 and not np.isnan(of_joint[0].nrmse):
-        title += f", {100 * of_joint[0].nrmse:.2g} % of measured range"
+        title += f", {100 * of_joint[0].nrmse:.2g} % of range"
     if peak > largest:
         title += f", cut: peak {peak:.3g}"
     axes.set_title(title, loc="left", fontsize=9, pad=3, color=_MUTED)
