@@ -93,12 +93,10 @@ def make_why() -> None:
     shutil.rmtree(ROOT / "out/why", ignore_errors=True)
     for file in re.finditer(r"`(\w+\.xml)`:\n\n```xml\n(.*?)```", page, re.DOTALL):
         (ROOT / file[1]).write_text(file[2])  # the page's commands read it from here
-    for block in re.finditer(r"^```(bash|python)\n(.*?)^```", page, re.MULTILINE | re.DOTALL):
-        command = (
-            ["bash", "-euo", "pipefail", "-c"] if block[1] == "bash" else [sys.executable, "-c"]
-        )
-        code = block[2].replace("ids evaluate ", "ids evaluate --figures none ")
-        subprocess.run([*command, code], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    for block in re.finditer(r"^```bash\n(.*?)^```", page, re.MULTILINE | re.DOTALL):
+        code = block[1].replace("ids evaluate ", "ids evaluate --figures none ")
+        command = ["bash", "-euo", "pipefail", "-c", code]
+        subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     (ROOT / "payload.xml").unlink(missing_ok=True)
     subprocess.run(
         [sys.executable, PICTURES / "make_why_pictures.py", ROOT / "out/why", PICTURES], check=True

@@ -27,11 +27,11 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("root")
     for name in ("docs", "inverse_dynamics_robots"):
         (root / name).symlink_to(REPOSITORY / name)
-    for block in blocks_of(PAGE, "xml", "bash", "python"):
+    for block in blocks_of(PAGE, "xml", "bash"):
         if block.language == "xml":
             (root / "payload.xml").write_text(block.code)
         else:
-            run(block, root, NO_FIGURES if block.language == "bash" else "")
+            run(block, root, NO_FIGURES)
     return root / "out/why"
 
 
