@@ -131,6 +131,28 @@ std::vector<Reach> leavesBelow(const RobotDescription& robot, std::size_t root) 
   return leaves;
 }
 
+/// Which tips to name where leaves, the farthest one first, are moved by different joints.
+std::string tipsToName(const RobotDescription& robot, std::size_t root,
+                       const std::vector<Reach>& leaves) {
+  // the joints above all of them
+  Joints shared = jointsAbove(robot, leaves.front().link);
+  for (const Reach& leaf : leaves) {
+    const Joints above = jointsAbove(robot, leaf.link);
+    const auto parting =
+        std::mismatch(shared.rbegin(), shared.rend(), above.rbegin(), above.rend()).first;
+    shared.erase(shared.begin(), parting.base());
+  }
+  const auto movable = [&robot](const Joints& joints) {
+    return static_cast<std::size_t>(std::count_if(
+        joints.begin(), joints.end(), [&](std::size_t j) { return isMovable(robot.joints[j]); }));
+  };
+  // an arm with a gripper, not a body with arms
+  const std::size_t arm = movable(shared) - movable(jointsAbove(robot, root));
+  if (2 * arm < leaves.front().movable) return "name one of them as tip";
+  return "name '" + robot.links[robot.joints[shared.front()].child].name +
+         "' as tip, where they part, or one of them";
+}
+
 /// The one leaf below root that all movable joints lead to.
 std::size_t leafBelow(const RobotDescription& robot, std::size_t root) {
   const std::vector<Reach> leaves = leavesBelow(robot, root);
@@ -145,13 +167,16 @@ std::size_t leafBelow(const RobotDescription& robot, std::size_t root) {
   const auto described = [&robot](const Reach& leaf) {
     return robot.links[leaf.link].name + " (moved by " + robot.joints[leaf.last_movable].name + ")";
   };
+  std::vector<Reach> rivals{tip};
   std::string others;
   for (const Reach& leaf : leaves) {
-    if (leaf.last_movable != kNone && !on_path[leaf.last_movable]) others += ", " + described(leaf);
+    if (leaf.last_movable == kNone || on_path[leaf.last_movable]) continue;
+    rivals.push_back(leaf);
+    others += ", " + described(leaf);
   }
   if (!others.empty()) {
     throw ModelError(where(robot), "tip", "one leaf below '" + robot.links[root].name + "'",
-                     described(tip) + others, "name one of them as tip");
+                     described(tip) + others, tipsToName(robot, root, rivals));
   }
   return tip.link;
 }

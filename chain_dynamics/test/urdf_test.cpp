@@ -435,8 +435,9 @@ TEST(Urdf, LeavesThatDifferInMovableJointsAreListed) {
   EXPECT_THAT(urdfError(urdf), AllOf(HasSubstr("tip: expected one leaf below 'base'"),
                                      HasSubstr("left (moved by left_joint)"),
                                      HasSubstr("right (moved by right_joint)"),
-                                     HasSubstr("name one of them as tip")));
+                                     HasSubstr("name 'tool' as tip, where they part, or")));
   EXPECT_EQ(urdfError(urdf, between("", "left")), "no error");
+  EXPECT_THAT(urdfError(urdf, between("tool", "")), HasSubstr("; name one of them as tip"));
 }
 
 TEST(Urdf, UnknownRootOrTipIsAnsweredByTheNearestNames) {
