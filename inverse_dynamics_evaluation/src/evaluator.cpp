@@ -82,9 +82,10 @@ void settleEffort(Evaluation& result, const InverseDynamicsSolver& solver,
     result.effort = effortOfData(asked ? options.ask(result) : EffortVerdict(), options.effort);
   }
   if (result.effort.meaning != kTorqueWithoutGravity) return;
+  const auto& subtracted = options.subtracted != nullptr ? *options.subtracted : solver;
   forEachBlock(table.size(), options, kComputed, kComputed, [&](Index first, Index count) {
     table.computed.middleCols(first, count) -=
-        solver.getGravityVectorBatch(table.q.middleCols(first, count));
+        subtracted.getGravityVectorBatch(table.q.middleCols(first, count));
   });
 }
 

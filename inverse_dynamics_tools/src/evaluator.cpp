@@ -246,9 +246,11 @@ void bindEvaluationOptions(py::module_& module) {
 }
 
 Evaluated evaluate(const SolverObject& solver, const py::object& motion, const Options& given,
-                   const py::function& ask, const py::function& progress) {
-  const auto shared = solverOf(solver);
+                   const py::function& ask, const py::function& progress,
+                   const SolverObject& subtracted) {
+  const auto shared = solverOf(solver), robots = solverOf(subtracted);
   evaluation::EvaluationOptions options = given;
+  options.subtracted = robots.get();
   options.progress = telling(progress);
   options.ask = [&](const Evaluated& found) {
     const py::gil_scoped_acquire acquire;
@@ -291,11 +293,11 @@ void bindEvaluator(py::module_& module) {
   bindEvaluationOptions(module);
   module.def(
       "evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::arg("options"),
-      py::arg("ask"), py::arg("progress"),
+      py::arg("ask"), py::arg("progress"), py::arg("subtracted"),
       "Computed torques of recorded joint states and their errors.\n\n"
       "motion: a JointLog, or a Recording, whose topic is read. ask: called with what is known\n"
       "before efforts are, if they are `auto`; returns a Verdict. progress: called with the share\n"
-      "that is done.");
+      "that is done. subtracted: a solver, whose gravity efforts without gravity lack.");
   module.def("check_options", &checkOptions, py::arg("method"), py::arg("cutoff"),
              py::arg("without_rules"), py::arg("effort_is"),
              "Raise EvaluationError for what no recording can be evaluated with.");

@@ -293,9 +293,17 @@ def test_torques_of_another_robot_are_refused(tmp_path):
         estimate_payload(file, "panda_simulated")
 
 
-def test_efforts_without_gravity_are_refused(recording):
-    with pytest.raises(PayloadError, match="expected efforts with gravity"):
-        estimate_payload(recording, "panda_simulated", effort_is="torque_without_gravity")
+def test_of_efforts_without_the_gravity_of_the_arm_a_load_is_found(tmp_path):
+    samples = loaded()
+    lacking = replace(samples, measured=samples.measured - panda().gravity_vector(samples.q))
+    files = table(tmp_path / "all.csv", samples), table(tmp_path / "lacking.csv", lacking)
+    meanings = ("torque", "torque_without_gravity")
+    full, found = (
+        estimate_payload(file, "panda_simulated", effort_is=meaning)
+        for file, meaning in zip(files, meanings, strict=True)
+    )
+    assert found.estimate.mass == pytest.approx(full.estimate.mass, rel=1e-9)
+    assert any("the load must not be set in the robot" in note for note in found.notes)
 
 
 def test_names_of_outputs_are_checked(ids, recording, tmp_path):

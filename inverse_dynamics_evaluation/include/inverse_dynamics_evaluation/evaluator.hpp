@@ -58,6 +58,8 @@ struct EvaluationOptions {
   std::vector<std::string> notes;  ///< what was left out or assumed in reading: SampleTable::notes
   TellProgress progress;
   AskData ask;  ///< called where efforts are `auto`; without it, the stated meaning counts
+  /// Whose gravity efforts without gravity lack: what the robot computes it with; null: the solver's.
+  const inverse_dynamics_solver::InverseDynamicsSolver* subtracted = nullptr;
 };
 
 /// Result of an evaluation. Copies share the table.

@@ -21,7 +21,6 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted, listed
 from inverse_dynamics.contact import (
     AccelerationResidual,
-    Compensated,
     ContactDetector,
     ContactThresholds,
     EstimatorOptions,
@@ -31,7 +30,7 @@ from inverse_dynamics.contact import (
     contact_thresholds,
 )
 from inverse_dynamics.errors import EvaluationError, InvalidParameterError
-from inverse_dynamics.evaluation.evaluation import Arm, Evaluation, evaluate
+from inverse_dynamics.evaluation.evaluation import Arm, Evaluation, evaluate, torques_with_gravity
 from inverse_dynamics.robot.descriptions import effort_limits
 from inverse_dynamics.robot.model_errors import read_model_errors
 
@@ -259,12 +258,11 @@ def _estimate(
         np.full(len(evaluation.joint_names), gain),
         velocity=VelocitySource.POSITIONS if tracking else VelocitySource.MEASURED,
         tracking=tracking or _bandwidth(gain),
-        compensated=Compensated(gravity=evaluation.effort.meaning == "torque_without_gravity"),
         friction_band=friction_band,
         longest_period=longest_period,
     )
     kind = MomentumObserver if solver.inertia_is_physical else AccelerationResidual
-    effort = evaluation.measured[used]
+    effort = torques_with_gravity(evaluation)[used]
     effort[1:] = (effort[1:] + effort[:-1]) / 2  # estimators take the mean since the sample before
     torques, valid = kind(solver, options).run(time, q, effort, None if tracking else qd)
     if not valid.any():

@@ -9,6 +9,7 @@ for error in result.errors:
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,13 +30,13 @@ from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.views import Views
 from inverse_dynamics.robot.descriptions import joint_units, read_description
 from inverse_dynamics.robot.dh_tables import guess_notes
-from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
+from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot, with_changes
 from inverse_dynamics.robot.solvers import description_notes, open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics._core import Evaluated, Verdict
+    from inverse_dynamics._core import Evaluated, Solver, Verdict
     from inverse_dynamics.base.arrays import DataFrame, Floats, Parameter
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.bags import JointStateTopic
@@ -239,7 +240,9 @@ def evaluate(
     without_gravity = result.effort.meaning == "torque_without_gravity"
     found = compare(
         pieces_of(arm.joint_names, result.time, states, result.measured, kept),
-        arm_model(robot, arm.solver, arm.description, without_gravity=without_gravity),
+        arm_model(
+            robot, arm.solver, arm.description, arm.subtracted, without_gravity=without_gravity
+        ),
     )
     result = replace(result, effort=found.doubting(result.effort), diagnosis=found.causes)
     if not found.text:
@@ -291,6 +294,26 @@ class Arm:
         self.recorded_names = tuple(_core.recorded_names(robot, list(self.joint_names)))
         _core.effort_options(robot, self.solver)  # drive gains that don't fit are refused
         self.units = joint_units(robot.urdf, description, self.joint_names)
+        self._robot = robot
+
+    @cached_property
+    def subtracted(self) -> Solver:
+        """The solver whose gravity efforts without gravity lack: of an identified model, the description's.
+
+        The robot subtracts what its maker computes, which nobody measures with such efforts.
+        """
+        robot = self._robot
+        if robot.model is None or robot.urdf is None or robot.plugin != RIGID_BODY:
+            return self.solver
+        return open_solver(replace(robot, model=None, friction=False), self.description)
+
+
+def torques_with_gravity(evaluation: Evaluation, robot: Robot | None = None) -> Floats:
+    """(N, n) measured torques; to efforts without gravity, that of Arm(robot).subtracted is added."""
+    if evaluation.effort.meaning != "torque_without_gravity":
+        return evaluation.measured
+    lacking = Arm(robot or evaluation.robot).subtracted.gravity_vector(evaluation.log.q)
+    return evaluation.measured + lacking
 
 
 def _compare(
@@ -320,7 +343,7 @@ def _compare(
             found.table.series[name] for name in ("time", "q", "qd", "qdd", "effort", "kept")
         )
         samples = pieces_of(arm.joint_names, time, (q, qd, qdd), recorded, kept)
-        model = arm_model(robot, arm.solver, arm.description)
+        model = arm_model(robot, arm.solver, arm.description, arm.subtracted)
         return meaning_of_efforts(samples, model, effort.drive_gains)
 
     options = _core.EvaluationOptions(
@@ -343,6 +366,7 @@ def _compare(
         options,
         ask,
         lambda share: progress("evaluating", round(share * expected), expected),
+        arm.subtracted,
     )
     arrays = found.table.series
     if isinstance(motion, JointLog):

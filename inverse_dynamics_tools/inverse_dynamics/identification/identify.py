@@ -13,7 +13,7 @@ import numpy as np
 from inverse_dynamics import _core
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
 from inverse_dynamics.evaluation.posture import Posture, locked_joints, posture_of
 from inverse_dynamics.evaluation.turns import on_one_turn
 from inverse_dynamics.identification.baselines import (
@@ -25,10 +25,13 @@ from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
 from inverse_dynamics.identification.drive_gains import check_gains, identify_drive_gains
 from inverse_dynamics.identification.knowledge import (
+    DOUBT,
+    assumed,
     independent_samples,
     intervals,
     knowledge,
     prior_decided,
+    weights_of_links,
 )
 from inverse_dynamics.identification.refusals import (
     check_accepted,
@@ -46,7 +49,7 @@ from inverse_dynamics.identification.result import (
 from inverse_dynamics.identification.summary import delay_told
 from inverse_dynamics.identification.uncertainty import factor_of
 from inverse_dynamics.robot.descriptions import link_of, parse_description, read_description
-from inverse_dynamics.robot.robots import Robot, load_robot
+from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -153,8 +156,11 @@ def identify(
         [evaluate(path, robot, progress=progress, **options) for path in recordings]
     )
     robot = evaluations[0].robot if evaluations else robot
-    _check(evaluations)
+    if not evaluations:
+        raise IdentificationError("recordings: expected at least one, got none")
     check_recordings(evaluations, accept)
+    described = replace(robot, plugin=RIGID_BODY, model=None)
+    evaluations = [replace(e, measured=torques_with_gravity(e, described)) for e in evaluations]
     blocks = _block_count(evaluations, blocks)
     cut = _cut(evaluations, blocks)
     seconds["reading"] = time.perf_counter() - begin
@@ -205,23 +211,6 @@ def _block_count(evaluations: Sequence[Evaluation], asked: int | None) -> int:
     if asked < _FEWEST_BLOCKS:
         raise IdentificationError(f"blocks: expected at least {_FEWEST_BLOCKS}, got {asked}")
     return asked
-
-
-def _check(evaluations: Sequence[Evaluation]) -> None:
-    if not evaluations:
-        raise IdentificationError("recordings: expected at least one, got none")
-    for evaluation in evaluations:
-        require_gravity(evaluation)
-
-
-def require_gravity(evaluation: Evaluation) -> None:
-    """Raise IdentificationError for efforts without it."""
-    if evaluation.effort.meaning == "torque_without_gravity":
-        raise IdentificationError(
-            f"{evaluation.bag}: expected efforts with gravity, as masses show in it alone, got "
-            "torques without; record the motor currents, or torques as the motors have them",
-            "Gravity is subtracted from the efforts",
-        )
 
 
 def _cut(evaluations: Sequence[Evaluation], blocks: int) -> list[Block]:
@@ -304,6 +293,12 @@ def _result(
     model = _core.FastModel.from_urdf(
         description, root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
+    gravity: tuple[Finding, ...] = ()
+    if any(e.effort.meaning == "torque_without_gravity" for e in evaluations):
+        weights = weights_of_links(model, fitter.prior, later)
+        options = _core.ArmFitOptions(chosen.law, prior_strength=chosen.prior_strength)
+        known = replace(known, assumed=assumed(fitter, fit, later, options, weights))
+        gravity = (_gravity_finding(robot, weights, first.units),)
     held, coverage = _held_out_errors(held_out)
     return Identification(
         robot=robot,
@@ -329,8 +324,9 @@ def _result(
         choices=chosen.choices,
         intervals=intervals(known, model, first.units),
         prior_decided=prior_decided(known, fitter.prior, links),
-        factor=factor_of(fitter, fit, later, known, law=chosen.law),
+        factor=np.hstack([factor_of(fitter, fit, later, known, law=chosen.law), known.assumed]),
         findings=(
+            *gravity,
             *_findings(fitter, links, held, first.units),
             *_motion_findings(fitter, chosen, later, independent),
         ),
@@ -394,6 +390,22 @@ def _findings(
             )
         )
     return tuple(found)
+
+
+def _gravity_finding(
+    robot: Robot, weights: Sequence[Sequence[Floats]], units: Sequence[str]
+) -> Finding:
+    """What is assumed where efforts lack gravity."""
+    off = np.sqrt(sum((np.concatenate(link) ** 2).mean(axis=0) for link in weights))
+    figures = ", ".join(f"{x:.2g} {unit}" for x, unit in zip(off, units, strict=True))
+    name = "the description" if robot.urdf is None else robot.urdf.name
+    return Finding(
+        "gravity",
+        f"efforts lack gravity: the robot is taken to subtract that of {name}, so masses and first moments are its "
+        "own, but for what the efforts contradict. Errors that its masses share with those in the robot don't show: "
+        f"if each is {100 * DOUBT:g} % off, gravity torques are off by {figures} (RMS by joint), which intervals and "
+        "deviations include",
+    )
 
 
 def _motion_findings(

@@ -8,18 +8,19 @@ doi 10.3368/jhr.50.2.317].
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from inverse_dynamics import _core
+from inverse_dynamics.identification.blocks import together
 from inverse_dynamics.identification.result import Interval, PriorDecided
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics._core import ArmFit, ArmFitter
+    from inverse_dynamics._core import ArmFit, ArmFitOptions, ArmFitter
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.identification.blocks import Block, FitBlock
 
@@ -38,6 +39,7 @@ _OWN = (
     ("fs", False),
     ("vs", True),
 )
+_COLUMNS = {"step": 6, "load": 7, "stribeck": 9}  # of _OWN, that a law has
 _OWN_UNITS = {  # of a revolute joint, and of a prismatic one
     "rotor_inertia": ("kg m^2", "kg"),
     "fv": ("N m s/rad", "N s/m"),
@@ -53,6 +55,9 @@ _OWN_UNITS = {  # of a revolute joint, and of a prismatic one
 _CLUSTERS = 10
 # Student's t, 97.5 %, by degrees of freedom, from one.
 _T = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160)
+DOUBT = 0.1
+"""Relative error of a described mass that nothing shows: where efforts lack gravity."""
+
 _KNOWN = 0.5  # share of the information that must be the data's
 
 
@@ -67,6 +72,8 @@ class Knowledge:
     prior: Floats  # (m, m)
     scores: Floats  # (clusters, m)
     worth: float  # how many independent samples one sample is worth, mean over the joints
+    # (m, K) by how much the unknowns are wrong if an assumption is, by one standard deviation each
+    assumed: Floats = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
     def covariance(self) -> Floats:
@@ -80,6 +87,7 @@ class Knowledge:
         clusters = len(centered)
         meat = centered.T @ centered * (clusters / (clusters - 1))
         covariance: Floats = bread @ (meat + self._prior_error() * self.prior) @ bread
+        covariance += self.assumed @ self.assumed.T
         return covariance
 
     def _prior_error(self) -> float:
@@ -94,7 +102,7 @@ class Knowledge:
     def shares(self) -> Floats:
         """(m,) of the information on each unknown, what comes from the data: 0 to 1."""
         prior = self.prior / self._prior_error()
-        posterior = np.diag(_inverse(self.worth * self.data + prior))
+        posterior = np.diag(_inverse(self.worth * self.data + prior)) + (self.assumed**2).sum(1)
         shares: Floats = 1 - posterior / np.diag(_inverse(prior))
         return shares
 
@@ -125,17 +133,57 @@ def knowledge(
         fitter.data(_clusters(blocks)),
         _core.ArmFitOptions(law, prior_strength=prior_strength),
     )
-    n = len(fitter.joint_names)
-    columns = (len(data) - 10 * n) // n
+    values = _values(fit, law)
+    none = np.zeros((len(values), 0))
+    return Knowledge(fitter.joint_names, values, fitter.prior, data, prior, scores, worth, none)
+
+
+def _values(fit: ArmFit, law: str) -> Floats:
+    """(m,) the unknowns of a fit."""
     own = [
         [
             fit.rotor_inertia[j] if key == "rotor_inertia" else friction.get(key, 0.0)
-            for key, _ in _OWN
+            for key, _ in _OWN[: _COLUMNS[law]]
         ]
         for j, friction in enumerate(fit.friction)
     ]
-    values = np.concatenate([fit.parameters.ravel(), np.array(own)[:, :columns].ravel()])
-    return Knowledge(fitter.joint_names, values, fitter.prior, data, prior, scores, worth)
+    values: Floats = np.concatenate([fit.parameters.ravel(), np.array(own).ravel()])
+    return values
+
+
+def weights_of_links(
+    model: _core.FastModel, links: Floats, blocks: Sequence[Block]
+) -> list[list[Floats]]:
+    """Gravity torques of DOUBT of each link's mass, (N, n) of each block. links: (n, 10)."""
+
+    def of(block: Block) -> Floats:
+        still = np.zeros_like(block.q)
+        columns = model.regressor(block.q, still, still).reshape(*block.q.shape, -1, 10)
+        return DOUBT * np.einsum("njkc,kc->knj", columns, links)
+
+    return [list(link) for link in zip(*map(of, blocks), strict=True)]
+
+
+def assumed(
+    fitter: ArmFitter,
+    fit: ArmFit,
+    blocks: Sequence[Block],
+    options: ArmFitOptions,
+    changes: Sequence[Sequence[Floats]],
+) -> Floats:
+    """(m, K): by how much the unknowns change with the torques (N, n) of the blocks."""
+    steps = []
+    logarithm = [log for _, log in _OWN[: _COLUMNS[options.law]]]
+    values = _values(fit, options.law)
+    own = values[fit.parameters.size :]
+    unit = np.append(
+        np.ones(fit.parameters.size), np.where(np.resize(logarithm, own.shape), own, 1)
+    )
+    for change in changes:
+        moved = [replace(b, tau=b.tau + torques) for b, torques in zip(blocks, change, strict=True)]
+        again = fitter.fit(fitter.data(together(moved)), options, fit)
+        steps.append((_values(again, options.law) - values) / unit)
+    return np.array(steps).T
 
 
 def _clusters(blocks: Sequence[Block]) -> list[FitBlock]:

@@ -22,7 +22,7 @@ from inverse_dynamics._core import PayloadEstimator, PayloadOptions, PayloadStat
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.errors import EvaluationError
-from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
+from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate, torques_with_gravity
 from inverse_dynamics.identification.baselines import solver_of
 from inverse_dynamics.identification.uncertainty import read_uncertainty
 from inverse_dynamics.robot.descriptions import tip_link
@@ -200,7 +200,7 @@ def samples_of(evaluation: Evaluation) -> Samples:
         log.q[kept],
         log.qd[kept],
         evaluation.qdd[kept],
-        evaluation.measured[kept],
+        torques_with_gravity(evaluation)[kept],
     )
 
 
@@ -357,12 +357,6 @@ def _require_plausible(evaluation: Evaluation) -> None:
     if certain or (rivals and all(cause in others for cause in rivals)):
         why = "; ".join(cause.text for cause in others)
         raise PayloadError(f"{evaluation.bag}: no load can be estimated: {why}")
-    if evaluation.effort.meaning == "torque_without_gravity":
-        raise PayloadError(
-            f"{evaluation.bag}: expected efforts with gravity, got torque_without_gravity "
-            f"({evaluation.effort.stated_by}): the weight of the load isn't in them; "
-            "record currents or joint torques with gravity, or state another meaning with --effort-is"
-        )
 
 
 def _require_motion(samples: Samples, where: str, load: str = "with the load") -> None:
@@ -429,6 +423,11 @@ def _notes(found: Fit, evaluation: Evaluation, idle: Floats) -> list[str]:
         "any position there gives the same torques, and the center of mass is written with 0"
         for direction in idle
     ]
+    if evaluation.effort.meaning == "torque_without_gravity":
+        notes.append(
+            "efforts lack gravity: the load must not be set in the robot (or as before this recording), else "
+            "its weight isn't in them, and the estimate is wrong"
+        )
     if "payload.mass" in evaluation.robot.parameters:
         notes.append(
             "the load comes on top of the `payload` of the run configuration, which `--payload` would "

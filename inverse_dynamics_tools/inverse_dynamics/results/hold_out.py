@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
 from inverse_dynamics.identification.baselines import baseline_torques, baselines, root_mean_squares
-from inverse_dynamics.identification.identify import require_gravity
 from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.results.model_files import model_file_text, urdf_of
 from inverse_dynamics.robot.descriptions import read_description
@@ -68,7 +67,7 @@ def hold_out(
         model.write_text(model_file_text(found, "identified"), encoding="utf-8")
         identified = replace(robot, plugin=RIGID_BODY, model=model, friction=True, parameters={})
         result = evaluate(recording, identified, progress=progress, **options)
-    require_gravity(result)
+    measured = torques_with_gravity(result)
     kept = result.samples.kept
     solvers = baselines(robot, read_description(urdf_of(found)))
     if "present" not in found.held_out:
@@ -80,8 +79,8 @@ def hold_out(
         if "present" in solvers
     ]
     computed = baseline_torques(solvers, motion, fitted)
-    computed["identified"] = result.computed[kept]
-    errors = {column: torques - result.measured[kept] for column, torques in computed.items()}
+    computed["identified"] = (measured + result.computed - result.measured)[kept]
+    errors = {column: torques - measured[kept] for column, torques in computed.items()}
     return HoldOut(
         recording=recording,
         rmse=root_mean_squares([errors]),

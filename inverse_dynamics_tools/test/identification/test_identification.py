@@ -302,7 +302,6 @@ def test_several_recordings_are_used_together(known, tmp_path):
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        ({"effort_is": "torque_without_gravity"}, "efforts with gravity"),
         ({"end": 3.0}, "at least 5 s of motion"),
         ({"blocks": 2}, "blocks: expected at least 3, got 2"),
     ],

@@ -66,9 +66,17 @@ class ArmModel:
 
 
 def arm_model(
-    robot: Robot, solver: Solver, description: str, *, without_gravity: bool = False
+    robot: Robot,
+    solver: Solver,
+    description: str,
+    subtracted: Solver | None = None,
+    *,
+    without_gravity: bool = False,
 ) -> ArmModel:
-    """The model of a solver. description: URDF text, or none; without_gravity: whether efforts are."""
+    """The model of a solver. description: URDF text, or none; without_gravity: whether efforts are.
+
+    subtracted: whose gravity these lack; none: the solver's.
+    """
     ones = np.ones(len(solver.joint_names))
     rubs = bool(np.any(solver.friction_vector(ones, q=ones)))
 
@@ -98,7 +106,7 @@ def arm_model(
 
     model = ArmModel(
         solver.torques,
-        solver.gravity_vector,
+        (subtracted or solver).gravity_vector,
         (lambda q, qd: solver.friction_vector(qd, q=q)) if rubs else None,
         compared_without_gravity=without_gravity,
         joint_types=tuple(solver.joint_types),

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.causes.samples import View
 
 _LENGTH = (8.0, 12.0)  # m/s^2 of gravity, with masses that are wrong by a fifth
+_LEFT = 0.25  # of gravity: masses that are wrong by a tenth leave less
 _LEAST_ANGLE = 4.0  # degrees: below it, flexible bases and wrong centers of mass look like a mount
 _MASS = (0.02, 1.0)  # of the arm's: less is within what makers know of it, no arm lifts more
 _REACH = 1.0  # m between the tip and a load's center of mass
@@ -45,11 +46,13 @@ def mounts_and_loads(view: View) -> Iterator[Rival]:
     """Gravity in another direction; a body at the tip that the model lacks."""
     arm = view.arm
     if arm.pulled is not None and arm.gravity_direction is not None:
-        own = arm.gravity_direction * (not arm.compared_without_gravity)
+        words = partial(
+            _subtracted if arm.compared_without_gravity else _mount, arm.gravity_direction
+        )
         columns, includes = tuple(arm.pulled(view.motion[0])), ("no_gravity",)
-        yield view.rival("gravity", partial(_mount, own), columns=columns, includes=includes)
+        yield view.rival("gravity", words, columns=columns, includes=includes)
     parts = view.loaded
-    if parts is not None and not arm.compared_without_gravity:
+    if parts is not None:
         low = (0.0, -np.inf, -np.inf, -np.inf)
         words = partial(_load, parts, arm.mass)
         yield view.rival("payload", words, columns=tuple(parts), low=low)
@@ -57,9 +60,12 @@ def mounts_and_loads(view: View) -> Iterator[Rival]:
 
 def rough(view: View) -> Rival:
     """Masses that a maker has estimated: no mistake, and no other cause if they explain as much."""
-    if view.arm.links is None or view.arm.compared_without_gravity:
+    if view.arm.links is None:
         return view.rival("rough", own=(view.computed,), own_low=-_ROUGH, own_high=_ROUGH)
-    parts = view.arm.links(*view.motion)[: len(view.names)]
+    motion, still = view.motion, np.zeros_like(view.qd)
+    if view.arm.compared_without_gravity:  # those in the robot are inexact
+        motion = motion[0], still, still
+    parts = view.arm.links(*motion)[: len(view.names)]
     return view.rival("rough", columns=tuple(parts), low=-_ROUGH, high=_ROUGH)
 
 
@@ -71,18 +77,35 @@ def _mount(own: Floats, change: Floats, _: Floats) -> Finding | None:
     direction = np.round(found * 9.81 / length, 2) + 0.0
     cosine = float(direction @ own) / max(float(np.linalg.norm(direction)) * size, 1e-12)
     angle = float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
-    if size and angle < _LEAST_ANGLE:
+    if angle < _LEAST_ANGLE:
         return None
     option = ",".join(f"{x:g}" for x in direction)
     return Finding(
         "gravity",
         "The robot hangs from the ceiling" if angle > 150 else "The robot hangs on a wall",
-        f"torques match if gravity acts along {option} m/s² in the frame of the root link"
-        + (f", {angle:.0f}° from where the model has it" if size else ", and is in the efforts"),
-        ("" if size else "give --effort-is torque; ")
-        + f"give --gravity {option}, or `gravity:` in the run configuration",
+        f"torques match if gravity acts along {option} m/s² in the frame of the root link, {angle:.0f}° from where "
+        "the model has it",
+        f"give --gravity {option}, or `gravity:` in the run configuration",
         value=[float(x) for x in direction],
         shared=direction - own,
+    )
+
+
+def _subtracted(own: Floats, left: Floats, _: Floats) -> Finding | None:
+    """Gravity that is left in efforts without it: the robot subtracts another one, or none."""
+    if np.linalg.norm(left) < _LEFT * np.linalg.norm(own):
+        return None
+    left = np.round(left, 2) + 0.0
+    lacking, option = (",".join(f"{x:g}" for x in v) for v in (own - left, left))
+    return Finding(
+        "gravity",
+        "Gravity is subtracted from the efforts",
+        f"torques match if the robot subtracts gravity along {lacking} m/s² in the frame of the root link, where the "
+        f"model has {','.join(f'{x:g}' for x in own)}",
+        "correct mounting, payload and masses where the robot has them; or, if its efforts include gravity, give "
+        f"--effort-is torque --gravity {option}",
+        value=[float(x) for x in left],
+        shared=left,
     )
 
 
