@@ -17,7 +17,7 @@ PAGE = page("docs/add_a_robot.md")
 def printed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     """Where the page was followed, and what its commands printed."""
     directory = tmp_path_factory.mktemp("newcomer")
-    (description,) = blocks_of(PAGE, "xml")
+    (description,) = blocks_of(page("docs/tutorials/my_robot.md"), "xml")
     configuration, payload = blocks_of(PAGE, "yaml")
     (commands,) = blocks_of(PAGE, "bash")
     for name, block in (("my_arm.urdf", description), ("my_arm.yaml", configuration)):
