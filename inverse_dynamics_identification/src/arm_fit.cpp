@@ -27,6 +27,7 @@ using Eigen::VectorXd;
 constexpr double kSettledStep = 0.02;  // Gauss-Newton step, relative to the width, that ends it
 constexpr double kSettledGain = 1e-3;  // the same, of the logarithm of a drive gain
 constexpr int kNoiseIterations = 4;
+constexpr double kHeld = 1e-6;  // deviation of a shift at zero, by the greatest velocity
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// An unknown of a joint that torques aren't linear in: a fit takes Gauss-Newton steps of it, or of its
@@ -59,9 +60,11 @@ struct Curved {
 std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index joint, double greatest) {
   using namespace own_column;
   const FrictionPrior& prior = options.friction;
-  const double factor = std::log(prior.width_factor), most_shift = prior.most_shift * greatest;
+  const double factor = std::log(prior.width_factor);
+  const double shift = (options.shift ? prior.shift : kHeld) * greatest;
+  const double most_shift = options.shift ? prior.most_shift * greatest : 0.0;
   std::vector<Curved> curved = {
-      {kShift, &StepFriction::shift, false, 0, prior.shift * greatest, -most_shift, most_shift},
+      {kShift, &StepFriction::shift, false, 0, shift, -most_shift, most_shift},
       {kWidth, &StepFriction::width, true, prior.width * greatest, factor,
        prior.least_width * greatest, prior.most_width * greatest}};
   if (options.terms == FrictionTerms::kStribeck) {
@@ -167,8 +170,9 @@ class Rounds {
     if (!has_gains_ || tried.drive_gains.size() != joints()) {
       tried.drive_gains = options_.drive_gains;
     }
-    if (options_.terms != FrictionTerms::kStribeck) {
-      for (StepFriction& law : tried.friction) law.fs = 0;
+    for (StepFriction& law : tried.friction) {
+      if (options_.terms != FrictionTerms::kStribeck) law.fs = 0;
+      if (!options_.shift) law.shift = 0;
     }
     int pass = 1;
     if (start != nullptr) {

@@ -68,6 +68,7 @@ TEST(ArmFitter, FindsAKnownRobotWithItsFriction) {
     ArmFitOptions options;
     options.terms = terms;
     options.prior_strength = 1;
+    options.shift = true;
     const ArmFit fit = fitter.fit({samplesOf(motion)}, options);
     EXPECT_LT(errorOf(fitter, fit, measured(terms, 2000, 9)), 1.1 * kNoise) << fit.passes;
     const std::vector<StepFriction> laws = knownFriction(terms);
@@ -216,6 +217,7 @@ ArmFitOptions gainOptions() {
   options.prior_strength = 1;
   options.most_passes = 30;
   options.drive_gains = Eigen::Vector3d(9, 9, 5);
+  options.shift = true;
   return options;
 }
 

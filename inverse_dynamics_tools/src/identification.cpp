@@ -202,11 +202,12 @@ void bindIdentification(py::module_& module) {
   bindOptions(
       module, "ArmFitOptions", "How to fit.",
       "law: step, load, stribeck; most_passes: over the samples; without: number of a block that "
-      "is left out; drive_gains: (n,) N m/A, about: tau are currents [A], and the gains are "
+      "is left out; shift: whether the step may be off zero velocity; drive_gains: (n,) N m/A, "
+      "about: tau are currents [A], and the gains are "
       "fitted.",
       Field{"law", &O::terms}, Field{"prior_strength", &O::prior_strength},
       Field{"most_passes", &O::most_passes}, Field{"without", &O::without},
-      Field{"drive_gains", &O::drive_gains});
+      Field{"shift", &O::shift}, Field{"drive_gains", &O::drive_gains});
   py::class_<HeldData>(module, "ArmData", "Blocks of samples for any number of fits.")
       .def("__len__", [](const HeldData& held) { return held.arrays.size(); });
   py::class_<ArmFitter>(module, "ArmFitter",

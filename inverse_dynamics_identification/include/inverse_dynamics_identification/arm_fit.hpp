@@ -87,6 +87,9 @@ struct ArmFitOptions {
   double prior_strength = 100;  ///< gamma [consistent_fit.hpp]
   int most_passes = 10;         ///< over the samples
   int without = -1;             ///< number of a block that is left out; -1: none
+  /// Whether the step may be off zero velocity. Friction at rest is a constant then, although it may be
+  /// anything up to its step: it helps within a recording, not on another day.
+  bool shift = false;
   FrictionPrior friction = {};
   /// n, > 0; N m/A (prismatic N/A), about: what is measured are currents, and the gains are fitted.
   /// Empty: what is measured are torques.
