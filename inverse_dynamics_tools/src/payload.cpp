@@ -126,25 +126,39 @@ std::unique_ptr<ArmUncertainty> makeUncertainty(const std::vector<StepFriction>&
       ArmUncertainty{friction, states(factor, "factor").transpose()});
 }
 
-/// Of N states, (N, n).
-Array armTorques(const ArmUncertainty& arm, const SolverObject& solver, const Vector& z,
-                 const Motion& motion) {
+/// What is made of the deviations (K, n) at each of N states: (N, n).
+template <typename Reduce>
+Array ofDeviations(const ArmUncertainty& arm, const SolverObject& solver, const Motion& motion,
+                   const Reduce& reduce) {
   ArmDeviations deviations(solverOf(solver), arm);
   const Array& like_q = std::get<0>(motion);
   const auto n = static_cast<Eigen::Index>(arm.friction.size());
   const auto [q, qd, qdd] = columnsOf(motion, like_q.ndim() == 2 ? like_q.shape(0) : 0, n);
-  if (z.size() != deviations.count()) {
-    throw py::value_error("z: expected " + std::to_string(deviations.count()) + " numbers, got " +
-                          std::to_string(z.size()));
-  }
   Array result = like(like_q);
   Map out = columns(result);
-  Eigen::MatrixXd D(z.size(), n);
+  Eigen::MatrixXd D(deviations.count(), n);
   for (Eigen::Index k = 0; k < q.cols(); ++k) {
     deviations.compute(q.col(k), qd.col(k), qdd.col(k), D);
-    out.col(k).noalias() = D.transpose() * z;
+    out.col(k) = reduce(D);
   }
   return result;
+}
+
+Array armTorques(const ArmUncertainty& arm, const SolverObject& solver, const Vector& z,
+                 const Motion& motion) {
+  if (z.size() != arm.factor.cols()) {
+    throw py::value_error("z: expected " + std::to_string(arm.factor.cols()) + " numbers, got " +
+                          std::to_string(z.size()));
+  }
+  return ofDeviations(arm, solver, motion, [&](const Eigen::MatrixXd& D) -> Eigen::VectorXd {
+    return D.transpose() * z;
+  });
+}
+
+Array armVariances(const ArmUncertainty& arm, const SolverObject& solver, const Motion& motion) {
+  return ofDeviations(arm, solver, motion, [](const Eigen::MatrixXd& D) -> Eigen::VectorXd {
+    return D.colwise().squaredNorm().transpose();
+  });
 }
 
 void bindArm(py::module_& module) {
@@ -155,7 +169,9 @@ void bindArm(py::module_& module) {
            "friction: smooth_coulomb of each of n joints, by the keys of the model file; "
            "factor: (m, K), the covariance of the m unknowns is factor factor'.")
       .def("torques", &armTorques, py::arg("solver"), py::arg("z"), py::arg("motion"),
-           "Of deviations z (K,) at q, qd, qdd, (N, n) each: (N, n) N m.");
+           "Of deviations z (K,) at q, qd, qdd, (N, n) each: (N, n) N m.")
+      .def("variances", &armVariances, py::arg("solver"), py::arg("motion"),
+           "Of the torques at q, qd, qdd, (N, n) each: (N, n) N^2 m^2.");
 }
 
 void bindEstimate(py::module_& module) {

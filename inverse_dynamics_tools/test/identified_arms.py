@@ -13,6 +13,8 @@ import numpy as np
 from conftest import JOINTS, URDF, motion
 
 from inverse_dynamics import FastModel, load_robot
+from inverse_dynamics._core import ArmUncertainty
+from inverse_dynamics.evaluation.bands import TorqueBand
 from inverse_dynamics.identification.result import (
     Choice,
     Finding,
@@ -69,6 +71,7 @@ def identification(recording: Path = Path("recording"), **changes: object) -> Id
         for column in blocks[0].computed
     }
     inside = np.concatenate([abs(b.computed["identified"] - b.measured) <= b.band for b in blocks])
+    factor = 1e-3 * np.eye(16 * len(JOINTS))[:, :3]
     fields = {
         "robot": robot,
         "recordings": (recording,),
@@ -96,7 +99,16 @@ def identification(recording: Path = Path("recording"), **changes: object) -> Id
         ),
         "intervals": (Interval("elbow_joint fc", "N m", 3.0, 0.1, "elbow_joint"),),
         "prior_decided": (PriorDecided("forearm_link", "m", 17.1, 17.4, 0.02),),
-        "factor": 1e-3 * np.eye(16 * len(JOINTS))[:, :3],
+        "factor": factor,
+        "band": TorqueBand(
+            arm=ArmUncertainty(model.friction, factor),
+            friction=model.friction,
+            noise=np.full(len(JOINTS), NOISE),
+            level=np.full(len(JOINTS), 0.5),
+            share=np.full(len(JOINTS), 0.1),
+            seen=np.abs(qd).max(axis=0),
+        ),
+        "levels": (),
         "findings": (Finding("prior", "masses of single links are the description's"),),
         "notes": ("3 samples repeat the one before",),
         "seconds": {"fit": 0.1},
@@ -161,7 +173,7 @@ def _block(recording, model, q, qd, qdd, stamps, measured, part) -> HeldOutBlock
             "urdf": engine().regressor(*states) @ engine().parameters,
             "identified": predicted_torques(model, *states),
         },
-        band=np.full(q.shape[1], 1.96 * NOISE),
+        band=np.full(q[part].shape, 1.96 * NOISE),
         law="step",
         prior_strength=10.0,
         delay=0.004,

@@ -80,9 +80,9 @@ def test_no_file_is_no_error(model):
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (lambda content: content.pop("friction"), "expected schema 2 with the keys"),
-        (lambda content: content.update(schema=1), "expected schema 2 with the keys"),
-        (lambda content: content.update(more=1), "expected schema 2 with the keys"),
+        (lambda content: content.pop("friction"), "expected schema 3 with the keys"),
+        (lambda content: content.update(schema=1), "expected schema 3 with the keys"),
+        (lambda content: content.update(more=1), "expected schema 3 with the keys"),
         (lambda content: content["deviations"][0].pop(), "expected deviations: rows"),
         (lambda content: content["deviations"].clear(), "expected deviations: rows"),
         (lambda content: content["deviations"][0].__setitem__(0, "x"), "expected deviations: rows"),
@@ -103,6 +103,9 @@ def test_no_file_is_no_error(model):
             lambda content: [row.pop() for row in content["held_out"]["torques"]],
             "expected held_out: gain, period",
         ),
+        (lambda content: content["band"].pop("level"), "expected band: noise, level"),
+        (lambda content: content["band"]["level"].pop(), "expected band: noise, level"),
+        (lambda content: content["band"].update(share=[-0.1] * 6), "expected band: noise, level"),
     ],
 )
 def test_a_damaged_file_is_refused(model, change, text):

@@ -217,7 +217,7 @@ def test_the_page_shows_each_column_and_the_band(found, files):
     (run,) = data
     (joint, *_) = run["joints"]
     assert [other["name"] for other in joint["others"]] == ["URDF"]
-    assert len(joint["band"]) == 5
+    assert len(joint["band"]) == 400
     assert joint["band"][0]["half"] == pytest.approx(0.196)
     assert run["links"]
 

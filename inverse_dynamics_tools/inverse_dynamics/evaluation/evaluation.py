@@ -13,6 +13,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from inverse_dynamics._core import Accelerations, Effort, JointError, joint_errors
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
@@ -22,6 +24,7 @@ from inverse_dynamics.data.recordings import open_motion
 from inverse_dynamics.data.table_logs import LogFormat
 from inverse_dynamics.data.time_window import TimeWindow
 from inverse_dynamics.evaluation.accelerations import MASKS, Samples
+from inverse_dynamics.evaluation.bands import read_band
 from inverse_dynamics.evaluation.causes.arm import arm_model
 from inverse_dynamics.evaluation.causes.compare import Cause, compare, meaning_of_efforts
 from inverse_dynamics.evaluation.causes.samples import pieces_of
@@ -83,6 +86,15 @@ class Evaluation(Views):
         Cause, ...
     ] = ()  # likely causes of the errors, the last one of the notes; not in files
     joint_types: tuple[str, ...] = ()  # as Solver.joint_types; not in files
+    band: Floats | None = None  # (N, n) half the width of the model's 95 % band; None: not known
+
+    @property
+    def coverage(self) -> Floats | None:
+        """(n,) share of the valid samples within the 95 % band; None: the model has none."""
+        if self.band is None:
+            return None
+        within = np.abs(self.computed - self.measured) <= self.band
+        return np.asarray(within[self.samples.kept].mean(axis=0))
 
     @property
     def notes_without_causes(self) -> tuple[str, ...]:
@@ -234,7 +246,12 @@ def evaluate(
     outside = outside_of_seen(
         arm.solver.seen, states, kept, arm.joint_names, arm.units, types=result.joint_types
     )
-    result = replace(result, notes=(*result.notes, *filter(None, [outside])))
+    band, other = read_band(robot.model, arm.solver)
+    result = replace(
+        result,
+        notes=(*result.notes, *filter(None, [outside, other])),
+        band=None if band is None else band.half_widths(arm.solver, *states),
+    )
     if posture.moves:
         return result
     without_gravity = result.effort.meaning == "torque_without_gravity"

@@ -8,6 +8,7 @@ time                                  s since the first sample
 position.J velocity.J acceleration.J  of the motion; the acceleration is the estimated one
 effort.J                              as recorded; current.J in its place where it is a current
 measured.J computed.J error.J         torques; error = computed - measured
+band.J                                half the width of the model's 95 % band, where it is known
 repeated ... kept                     what was found in a sample, true or false: see Samples
 """
 
@@ -46,6 +47,7 @@ def series_columns(evaluation: Any) -> list[Column]:
             ("measured", torque, evaluation.measured),
             ("computed", torque, evaluation.computed),
             ("error", torque, error),
+            *([] if evaluation.band is None else [("band", torque, evaluation.band)]),
         )
         columns += [Column(f"{name}.{joint}", unit, rows[:, j]) for name, unit, rows in series]
     columns += [Column(mask, "", getattr(evaluation.samples, mask)) for mask in MASKS]

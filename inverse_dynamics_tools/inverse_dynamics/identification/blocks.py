@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 _FEWEST = 20  # samples that a block can be differentiated with
 
-_ARRAYS = ("time", "instants", "used", "q", "qd", "qdd", "tau", "counts")  # of a block
+_ARRAYS = ("time", "instants", "used", "q", "qd", "qdd", "tau", "counts", "rests")  # of a block
+_REST = 0.01  # of each joint's greatest velocity, which a moving arm's joints aren't all below
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,8 @@ class Block:
     qd: Floats
     qdd: Floats  # from this block's samples alone
     tau: Floats  # measured
-    counts: Mask  # (M,) samples to be fitted to: no repeats, no start transient
+    counts: Mask  # (M,) valid samples: no repeats, no start transient
+    rests: Mask  # (M,) no joint moves: friction may be anything up to its step
 
     def __len__(self) -> int:
         return len(self.time)
@@ -62,14 +64,18 @@ class Block:
     def parts(self, count: int) -> list[Block]:
         """The block in so many parts, with its accelerations."""
         edges = np.linspace(0, len(self.time), count + 1).round().astype(int)
-        return [
-            replace(self, **{name: getattr(self, name)[first:after] for name in _ARRAYS})
-            for first, after in pairwise(edges)
-        ]
+        return [self._rows(slice(first, after)) for first, after in pairwise(edges)]
 
     def thinned(self, step: int) -> Block:
         """Each sample whose number is a multiple of step, with its acceleration."""
-        return replace(self, **{name: getattr(self, name)[::step] for name in _ARRAYS})
+        return self._rows(slice(None, None, step))
+
+    def moving(self) -> Block:
+        """Without the samples at rest."""
+        return self._rows(~self.rests) if self.rests.any() else self
+
+    def _rows(self, rows: slice | Mask) -> Block:
+        return replace(self, **{name: getattr(self, name)[rows] for name in _ARRAYS})
 
     @cached_property
     def fitted(self) -> FitBlock:
@@ -107,6 +113,7 @@ def _block(evaluation: Evaluation, rows: slice) -> Block:
     log, samples = evaluation.log, evaluation.samples
     used = ~(samples.repeated | samples.non_increasing)
     qdd, instants = _accelerations(evaluation, rows)
+    greatest = np.abs(log.qd).max(axis=0)
     return Block(
         recording=f"{evaluation.bag}",
         time=evaluation.time[rows],
@@ -117,6 +124,7 @@ def _block(evaluation: Evaluation, rows: slice) -> Block:
         qdd=qdd,
         tau=evaluation.measured[rows],
         counts=(used & samples.kept)[rows],
+        rests=(np.abs(log.qd[rows]) < _REST * greatest).all(axis=1),
     )
 
 
@@ -130,6 +138,16 @@ def _accelerations(evaluation: Evaluation, rows: slice) -> tuple[Floats, Floats]
     cutoff = 0.0 if how.chosen else how.cutoff or 0.0  # zero: chosen from the block
     motion = time, log.q[rows], log.qd[rows], log.effort[rows]
     return _core.low_pass_accelerations(*motion, cutoff)[:2]
+
+
+def moving(blocks: Sequence[Block]) -> list[Block]:
+    """What models are fitted to: blocks without the samples at rest, those that are long enough.
+
+    At rest friction is whatever holds the arm, anything up to its step. A fit would take it for a step off
+    zero velocity, and for gravity.
+    """
+    found = [block.moving() for block in blocks]
+    return [block for block in found if len(block) >= _FEWEST] or list(blocks)
 
 
 def together(blocks: Sequence[Block]) -> list[FitBlock]:

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics._core import ArmFitOptions
-from inverse_dynamics.identification.blocks import together
+from inverse_dynamics.evaluation.bands import NORMAL, rest_share
+from inverse_dynamics.identification.blocks import moving, together
 from inverse_dynamics.identification.result import LAWS, Choice
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ STRENGTHS = (1000.0, 100.0, 10.0)
 _STANDARD_ERRORS = 2.0  # by which a simpler alternative may be worse than the best
 _PASSES = 3  # over the samples, from a fit to nearly the same ones
 _BAND = 0.95
+_LITTLE = 0.05  # of the uncertainty at rest, where a joint counts as moving
 _FOLDS = 8  # parts of blocks that are left out in turn, about
 _MOST_SAMPLES = 15_000  # that choices are made with; neighbours' errors are alike
 _DELAY_STEP = 0.008  # s, at least
@@ -49,6 +51,7 @@ class Chosen:
     delay: float
     fit: ArmFit
     band: Floats  # (n,) half the width of the 95 % band
+    noise: Floats  # (n,) standard deviation of held-out torques of a joint while it moves
     choices: tuple[Choice, ...]
 
 
@@ -75,6 +78,7 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
 
     Of long recordings, choices take samples at equal distances; the fit takes all.
     """
+    blocks = moving(blocks)
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
     delay, parts = _delayed(fitter, blocks, step)
     whole: dict[str, ArmFit] = {}
@@ -95,9 +99,22 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     )
     # as solvers compute torques: the delay isn't made up for
     as_recorded = _cut([block.thinned(step) for block in blocks])
-    errors = [errors_of(fitter, f, part) for f, part in zip(best.fits, as_recorded, strict=True)]
-    band = np.quantile(np.abs(np.concatenate(errors)), _BAND, axis=0)
-    return Chosen(best.law, best.prior_strength, delay, fit, band, choices)
+    errors = np.abs(
+        np.concatenate(
+            [errors_of(fitter, f, part) for f, part in zip(best.fits, as_recorded, strict=True)]
+        )
+    )
+    qd = np.concatenate([part.fitted[1] for part in as_recorded])
+    moves = rest_share(qd, fit.friction, np.abs(qd).max(axis=0)) < _LITTLE
+    return Chosen(
+        law=best.law,
+        prior_strength=best.prior_strength,
+        delay=delay,
+        fit=fit,
+        band=np.quantile(errors, _BAND, axis=0),
+        noise=np.nanquantile(np.where(moves, errors, np.nan), _BAND, axis=0) / NORMAL,
+        choices=choices,
+    )
 
 
 class _Parts:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.evaluation.bands import TorqueBand
     from inverse_dynamics.robot.robots import Robot
 
 COLUMNS = {
@@ -54,13 +55,20 @@ class IdentificationError(EvaluationError):
         self.mistake = mistake
 
 
+def solver_of_text(model: str) -> Solver:
+    """The solver of the text of a model file."""
+    with TemporaryDirectory() as directory:
+        file = Path(directory) / "model.yaml"
+        file.write_text(model, encoding="utf-8")
+        return Solver(RIGID_BODY, model=f"{file}")
+
+
 @dataclass(frozen=True)
 class Finding:
     """Something to know about the result, in words.
 
-    kind: floor (a link's description is unusable), delay, range (offset or shift at its bound),
-    motion (a joint that hardly moves), samples, gain (no better than the starting model), worse (a joint that the
-    description predicts better).
+    kind: floor (a link's description is unusable), delay, motion (a joint that hardly moves), samples, gain
+    (no better than the starting model), worse (a joint that the description predicts better).
     """
 
     kind: str
@@ -99,7 +107,7 @@ class HeldOutBlock:
     counts: Mask  # (M,) samples that errors are of: no repeats, no start transient
     measured: Floats
     computed: Mapping[str, Floats]  # by name of COLUMNS
-    band: Floats  # (n,) half the width of the 95 % band of this block, chosen on the others
+    band: Floats  # half the width of the 95 % band of this block, chosen on the others
     law: str  # of LAWS, chosen on the others
     prior_strength: float
     delay: float  # s
@@ -111,6 +119,15 @@ class HeldOutBlock:
             name: (self.measured - computed)[self.counts]
             for name, computed in self.computed.items()
         }
+
+
+@dataclass(frozen=True)
+class Level:
+    """By what a recording differs from the model of the other recordings: temperature, wear."""
+
+    recording: str
+    offset: Floats  # (n,) N m, of measured torques
+    share: Floats  # (n,) of friction, that there is more of
 
 
 @dataclass(frozen=True)
@@ -187,6 +204,8 @@ class Identification:
     intervals: tuple[Interval, ...]
     prior_decided: tuple[PriorDecided, ...]
     factor: Floats  # (m, K) of the m unknowns of the fit: their covariance is factor factor'
+    band: TorqueBand  # of the final model
+    levels: tuple[Level, ...]  # of each recording, where there are several
     findings: tuple[Finding, ...]
     notes: tuple[str, ...]  # of reading and differentiating, as evaluate() has them
     seconds: Mapping[str, float]  # what took how long
@@ -198,13 +217,8 @@ class Identification:
 
     def solver(self) -> Solver:
         """The identified model as a solver, as `Solver(model=...)` of its model file is."""
-        text = import_module("inverse_dynamics.results.model_files").model_file_text(
-            self, "identified"
-        )
-        with TemporaryDirectory() as directory:
-            file = Path(directory) / "model.yaml"
-            file.write_text(text, encoding="utf-8")
-            return Solver(RIGID_BODY, model=f"{file}")
+        files = import_module("inverse_dynamics.results.model_files")
+        return solver_of_text(files.model_file_text(self, "identified"))
 
     @property
     def offsets(self) -> Floats:

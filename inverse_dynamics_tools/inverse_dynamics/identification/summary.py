@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,10 +12,10 @@ import numpy as np
 from inverse_dynamics.identification.result import COLUMNS, LAWS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.identification.result import Choice, DriveGain, Identification
+    from inverse_dynamics.identification.result import Choice, DriveGain, Identification, Level
 
 TITLES = {
     "urdf": "URDF",
@@ -86,7 +87,18 @@ def choices_told(found: Identification) -> list[tuple[str, str]]:
         ("filter", found.filter),
         ("effort means", found.effort),
         ("data", f"{found.samples} samples, {found.duration:.1f} s"),
+        *(
+            (f"level of {Path(level.recording).name}", _level_told(level, found.units))
+            for level in found.levels
+        ),
     ]
+
+
+def _level_told(level: Level, units: Sequence[str]) -> str:
+    """Of each joint."""
+    offsets = (f"{x:+.2g} {unit}" for x, unit in zip(level.offset, units, strict=True))
+    shares = ", ".join(f"{100 * x:+.0f} %" for x in level.share)
+    return f"against the other recordings' model: offset {', '.join(offsets)}; friction {shares}"
 
 
 def delay_told(delay: float) -> str:

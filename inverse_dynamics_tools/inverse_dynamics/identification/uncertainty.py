@@ -7,32 +7,39 @@ The covariance is that of the posterior: samples whose errors are correlated in 
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from inverse_dynamics import _core
 from inverse_dynamics.base.plain import plain
+from inverse_dynamics.evaluation.bands import LEVEL, SHARE, TorqueBand
 from inverse_dynamics.evaluation.contacts import LEAST_GAIN
 from inverse_dynamics.identification.blocks import together
 from inverse_dynamics.identification.cross_validation import errors_of
+from inverse_dynamics.identification.result import Level
 from inverse_dynamics.robot.model_errors import SCHEMA, read_model_errors, sha256
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from inverse_dynamics._core import ArmFit, ArmFitter, ArmUncertainty
+    from inverse_dynamics._core import ArmFit, ArmFitter, ArmUncertainty, Solver
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.identification.blocks import Block
+    from inverse_dynamics.identification.cross_validation import Chosen
     from inverse_dynamics.identification.knowledge import Knowledge
-    from inverse_dynamics.identification.result import Identification
+    from inverse_dynamics.identification.result import HeldOutBlock, Identification
 
 _DIGITS = 7
 _LEAST = 1e-6  # variance of the torques by the noise's, of deviations that are written
 _RIDGE = 1e-12  # by the information: rounding, of directions that change no torque
 _MOST_ROWS = 10_000  # of held-out errors: half a megabyte; they are thinned
 _APART = 10.0  # s between blocks: many correlation times
+_GREATEST = 0.995  # quantile that is taken for the greatest torque
+_MOVES = 0.05  # of the greatest velocity
+_USUAL_COUNTS = 2  # recordings
 
 
 def factor_of(
@@ -57,6 +64,57 @@ def factor_of(
     return factor
 
 
+def band_of(chosen: Chosen, factor: Floats, blocks: Sequence[Block]) -> TorqueBand:
+    """The band of a fit to blocks, of whose level on other days nothing is known but what is usual."""
+    _, qd, _, tau = (np.abs(np.concatenate(v)) for v in zip(*together(blocks), strict=True))
+    friction = chosen.fit.friction
+    return TorqueBand(
+        arm=_core.ArmUncertainty(friction, factor),
+        friction=friction,
+        noise=chosen.noise,
+        level=LEVEL * np.quantile(tau, _GREATEST, axis=0),
+        share=np.full(len(friction), SHARE),
+        seen=qd.max(axis=0),
+    )
+
+
+def levels_of(
+    recordings: Sequence[str], blocks: Sequence[HeldOutBlock], solver: Solver
+) -> tuple[Level, ...]:
+    """Of each recording that was held out as a whole. solver: of the final model."""
+    return tuple(
+        _level(recording, [b for b in blocks if b.recording == recording], solver)
+        for recording in recordings
+    )
+
+
+def _level(recording: str, blocks: Sequence[HeldOutBlock], solver: Solver) -> Level:
+    """By which offset and share of friction torques differ from those that other recordings predict."""
+    rows = [(b.q[b.counts], b.qd[b.counts], b.errors["identified"]) for b in blocks]
+    q, qd, errors = (np.concatenate(values) for values in zip(*rows, strict=True))
+    friction = solver.friction_vector(qd, q=q) - solver.friction_vector(np.zeros_like(qd), q=q)
+    values = []
+    for f, v, e in zip(friction.T, np.abs(qd).T, errors.T, strict=True):
+        moves = v > _MOVES * v.max()
+        values.append(np.linalg.lstsq(np.column_stack([np.ones_like(f), f])[moves], e[moves])[0])
+    offset, share = np.transpose(values)
+    return Level(recording, offset, share)
+
+
+def with_levels(band: TorqueBand, levels: Sequence[Level]) -> TorqueBand:
+    """The band, of whose levels recordings tell: what is usual counts as two of them."""
+
+    def level(usual: Floats, found: Sequence[Floats]) -> Floats:
+        squares = _USUAL_COUNTS * usual**2 + np.square(found).sum(axis=0)
+        return np.asarray(np.sqrt(squares / (_USUAL_COUNTS + len(found))))
+
+    return replace(
+        band,
+        level=level(band.level, [recording.offset for recording in levels]),
+        share=level(band.share, [recording.share for recording in levels]),
+    )
+
+
 def _in_a_row(times: Sequence[Floats]) -> Floats:
     """One time for all blocks, those of several recordings too."""
     rows, end = [], 0.0
@@ -74,6 +132,10 @@ def uncertainty_text(found: Identification, model_text: str) -> str:
         "friction": plain(found.model.friction),
         "deviations": _rows(found.factor.T, _DIGITS),
         "held_out": _held_out(found),
+        "band": {
+            key: [float(f"{x:.{_DIGITS}g}") for x in getattr(found.band, key)]
+            for key in ("noise", "level", "share")
+        },
     }
     return json.dumps(content, allow_nan=False) + "\n"
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.evaluation.evaluation import CAUSE
 from inverse_dynamics.figures.scene import Scene, read_scene
-from inverse_dynamics.report.page import ReportRun, ReportTable, joint_table
+from inverse_dynamics.report.page import ReportRun, ReportTable, bands_of, joint_table
 
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation.comparison import Comparison
@@ -39,6 +39,7 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
         links=scene.links,
         scene_notes=scene.notes,
         left_out=evaluation.samples.left_out_spans(evaluation.log),
+        bands=[] if evaluation.band is None else bands_of(evaluation.time, evaluation.band),
     )
 
 

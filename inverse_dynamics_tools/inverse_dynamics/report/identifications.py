@@ -15,10 +15,10 @@ from inverse_dynamics.figures.scene import Scene, read_scene
 from inverse_dynamics.identification.knowledge import PARAMETERS, UNITS
 from inverse_dynamics.identification.summary import TITLES, choices_told, headings, held_out_rows
 from inverse_dynamics.report.page import (
-    Band,
     ReportRun,
     ReportSummary,
     ReportTable,
+    bands_of,
     render_page,
 )
 
@@ -49,6 +49,7 @@ def _run(found: Identification, recording: str, several: bool) -> ReportRun:
         for column in blocks[0].computed
     }
     measured = np.concatenate([block.measured for block in blocks])
+    time = np.concatenate([block.time for block in blocks])
     identified = computed.pop("identified")
     urdf = found.robot.urdf
     scene = Scene() if urdf is None else read_scene(urdf, found.joints)
@@ -57,7 +58,7 @@ def _run(found: Identification, recording: str, several: bool) -> ReportRun:
         description=f"{counted(len(blocks), 'block')}, each predicted by models fitted to the others. Below, "
         "errors of the identified model over all samples, those at a start transient too",
         solver="identified",
-        time=np.concatenate([block.time for block in blocks]),
+        time=time,
         q=np.concatenate([block.q for block in blocks]),
         measured=measured,
         computed=identified,
@@ -67,7 +68,7 @@ def _run(found: Identification, recording: str, several: bool) -> ReportRun:
         links=scene.links,
         scene_notes=scene.notes,
         others={TITLES[column]: values for column, values in computed.items()},
-        bands=[Band(float(b.time[0]), float(b.time[-1]), b.band) for b in blocks],
+        bands=bands_of(time, np.concatenate([block.band for block in blocks])),
     )
 
 

@@ -13,6 +13,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 # Of longer recordings the page draws the lowest and the highest value of each of half as many stretches, so that no
 # peak is lost; metrics, bags and tables use every sample. Four robots stay below 10 MB.
 MAX_SAMPLES = 12_000
+_PIECES = 400  # of a band whose width changes
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,15 @@ class Band:
     start: float
     end: float
     half: Floats
+
+
+def bands_of(time: Floats, half: Floats) -> list[Band]:
+    """A band whose width (N, n) changes with time, as pieces of its mean width."""
+    edges = np.unique(np.linspace(0, len(time) - 1, _PIECES + 1).round().astype(int)).tolist()
+    return [
+        Band(float(time[first]), float(time[after]), half[first:after].mean(axis=0))
+        for first, after in pairwise(edges)
+    ]
 
 
 @dataclass(frozen=True)

@@ -233,12 +233,13 @@ def _check_marked(directory: Path) -> None:
 
 
 _RECORDED = ("header_stamps", "receive_stamps", "q", "qd", "effort")
-_PER_JOINT = ("q", "qd", "effort", "qdd", "measured", "computed")
+_PER_JOINT = ("q", "qd", "effort", "qdd", "measured", "computed", "band")
 
 
 def _series(evaluation: Evaluation) -> dict[str, Any]:
     """Arrays of series.npz, not copied."""
-    computed = ("time", "qdd", "measured", "computed")
+    computed = ["time", "qdd", "measured", "computed"]
+    computed += [] if evaluation.band is None else ["band"]
     return {
         **{name: getattr(evaluation.log, name) for name in _RECORDED},
         **{name: getattr(evaluation, name) for name in computed},
@@ -258,6 +259,7 @@ def metrics(evaluation: Evaluation) -> dict[str, Any]:
         "effort": evaluation.effort,
         "joints": evaluation.errors,
         "mean_rmse": evaluation.mean_rmse if len(set(evaluation.units)) == 1 else None,
+        **({} if evaluation.band is None else {"in_band": evaluation.coverage}),
         "kept": {
             "samples": len(evaluation.log) - evaluation.samples.left_out,
             "joints": evaluation.errors_of_kept,

@@ -18,8 +18,10 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
 from inverse_dynamics.identification.baselines import baseline_torques, baselines, root_mean_squares
 from inverse_dynamics.identification.result import IdentificationError
+from inverse_dynamics.identification.uncertainty import uncertainty_text
 from inverse_dynamics.results.model_files import model_file_text, urdf_of
 from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.model_errors import model_errors_file
 from inverse_dynamics.robot.robots import RIGID_BODY
 
 if TYPE_CHECKING:
@@ -64,7 +66,9 @@ def hold_out(
         robot = replace(robot, drive_gains=tuple(gains.tolist()))
     with tempfile.TemporaryDirectory() as directory:
         model = Path(directory) / "model.yaml"
-        model.write_text(model_file_text(found, "identified"), encoding="utf-8")
+        text = model_file_text(found, "identified")
+        model.write_text(text, encoding="utf-8")
+        model_errors_file(model).write_text(uncertainty_text(found, text), encoding="utf-8")
         identified = replace(robot, plugin=RIGID_BODY, model=model, friction=True, parameters={})
         result = evaluate(recording, identified, progress=progress, **options)
     measured = torques_with_gravity(result)
@@ -84,6 +88,6 @@ def hold_out(
     return HoldOut(
         recording=recording,
         rmse=root_mean_squares([errors]),
-        coverage=(np.abs(errors["identified"]) <= found.model.torque_deviation).mean(axis=0),
+        coverage=np.asarray(result.coverage),
         notes=result.notes,
     )

@@ -154,7 +154,7 @@ def summary(found: Identification, tests: Sequence[HoldOut] = ()) -> dict[str, A
         **{
             name: plain(getattr(found, name))
             for name in found.__dataclass_fields__
-            if name not in ("robot", "blocks", "factor")
+            if name not in ("robot", "blocks", "factor", "band")
         },
         "hold_out": [plain(test) for test in tests],
         "blocks": [
@@ -166,7 +166,7 @@ def summary(found: Identification, tests: Sequence[HoldOut] = ()) -> dict[str, A
                 "law": block.law,
                 "prior_strength": block.prior_strength,
                 "delay": block.delay,
-                "band": plain(block.band),
+                "band": plain(block.band.mean(axis=0)),
                 "rmse": {
                     column: plain(np.sqrt((errors**2).mean(axis=0)))
                     for column, errors in block.errors.items()

@@ -20,8 +20,9 @@ from inverse_dynamics.errors import RobotError
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA = 2
-_KEYS = ("schema", "model_sha256", "friction", "deviations", "held_out")
+SCHEMA = 3
+_KEYS = {"schema", "model_sha256", "friction", "deviations", "held_out"}
+_BAND = {"noise", "level", "share"}
 _NUMBERS = {"fv", "fc", "width"}  # of smooth_coulomb
 _OPTIONAL_NUMBERS = {"shift", "fo", "fl", "fs", "vs"}
 
@@ -51,8 +52,10 @@ def _content(file: Path) -> dict[str, Any]:
         content = json.loads(file.read_text(encoding="utf-8"), parse_int=float)
     except (OSError, ValueError, RecursionError) as error:
         raise _error(file, "JSON of `ids identify`", str(error)) from error
-    if not isinstance(content, dict) or set(content) != set(_KEYS) or content["schema"] != SCHEMA:
-        raise _error(file, f"schema {SCHEMA} with the keys {', '.join(_KEYS)}", "others")
+    schemas: dict[Any, set[str]] = {2: _KEYS, SCHEMA: _KEYS | {"band"}}
+    if not isinstance(content, dict) or schemas.get(content.get("schema")) != content.keys():
+        keys = ", ".join(sorted(schemas[SCHEMA]))
+        raise _error(file, f"schema {SCHEMA} with the keys {keys}", "others")
     laws, held_out = content["friction"], content["held_out"]
     if not _columns(content["deviations"]):
         raise _error(file, "deviations: rows of as many finite numbers each", "others")
@@ -65,6 +68,14 @@ def _content(file: Path) -> dict[str, Any]:
         and _columns(held_out["torques"]) == len(laws)
     ):
         raise _error(file, "held_out: gain, period, and rows of torques of each joint", "others")
+    band = content.get("band", {key: [0.0] * len(laws) for key in _BAND})
+    if not (
+        isinstance(band, dict)
+        and band.keys() == _BAND
+        and _columns([*band.values()]) == len(laws)
+        and min(min(band.values())) >= 0
+    ):
+        raise _error(file, "band: noise, level and share of each joint, not below zero", "others")
     return content
 
 

@@ -57,10 +57,13 @@ def error_table(evaluation: Evaluation) -> Table:
     left_out, total = evaluation.samples.left_out, len(evaluation.log)
     errors, kept = evaluation.errors, evaluation.errors_of_kept
     last = ["RMSE*"] if left_out else []
+    within = [] if evaluation.coverage is None else evaluation.coverage.tolist()
+    last += ["in\n95 %\nband"] if within else []
     table = _table("MAE", "RMSE", "NRMSE", "bias", "R²", *last)
     if left_out:
         table.caption = f"* over the {total - left_out} valid samples of {total}"
-    for error, of_kept in zip(errors, kept, strict=True):
+    for j, (error, of_kept) in enumerate(zip(errors, kept, strict=True)):
+        of_valid = [rounded(of_kept.rmse)] if left_out else []
         table.add_row(
             error.joint,
             error.unit,
@@ -69,17 +72,19 @@ def error_table(evaluation: Evaluation) -> Table:
             _percent(error.nrmse),
             f"{error.bias:+.3g}" if abs(error.bias) < 0.1 else f"{error.bias:+.3f}",
             _number(error.r2),
-            *(rounded(of_kept.rmse) for _ in last),
+            *of_valid,
+            *(f"{100 * share:.1f} %" for share in within[j : j + 1]),
         )
     if _have_one_unit(evaluation.units):
         mae, rmse = fmean(e.mae for e in errors), evaluation.mean_rmse
         means = [rounded(mae), rounded(rmse), "", "", ""]
+        means += [rounded(fmean(e.rmse for e in kept))] if left_out else []
+        means += [f"{100 * fmean(within):.1f} %"] if within else []
         table.add_section()
         table.add_row(
             "mean",
             evaluation.units[0],
             *means,
-            *(rounded(fmean(e.rmse for e in kept)) for _ in last),
         )
     return table
 
