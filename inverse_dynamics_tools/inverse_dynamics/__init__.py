@@ -3,8 +3,8 @@
 
     import inverse_dynamics as ids
 
-    solver = ids.Solver("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL", urdf=text)
-    tau = solver.torques(q, qd, qdd)               # (n,) or (N, n), one state per row
+    solver = ids.Solver(urdf="arm.urdf")
+    tau = solver.torques(q, qd, qdd)  # (n,) or (N, n), one state per row
 
     result = ids.evaluate("recording", "ur10_real")
     print(result.mean_rmse)

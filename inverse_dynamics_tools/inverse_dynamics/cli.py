@@ -141,8 +141,7 @@ class _Parser(argparse.ArgumentParser):
         elif wrong:
             hint = did_you_mean(wrong[1], re.findall(r"[\w-]+", wrong[2]))
             message += hint and f"; {hint}"
-        text = _message(f"{self.prog}: error: {message}; see `{self.prog} --help`")
-        self.exit(2, f"{text}\n")
+        self.exit(2, f"{_shown(f'{self.prog}: error: {message}; see `{self.prog} --help`')}\n")
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -306,15 +305,21 @@ def _outcome() -> str:
     return outcome()
 
 
-def _say(text: str) -> None:
-    """A message to the user, on stderr."""
-    text = _message(f"ids: {text}")
+def _shown(text: str) -> str:
+    """A message as stderr has it: a terminal in lines of whole words."""
+    text = _message(text)
     with suppress(OSError, ValueError):
-        if sys.stderr is not None and sys.stderr.isatty():  # whole words
+        if sys.stderr is not None and sys.stderr.isatty():
             width = shutil.get_terminal_size().columns
             lines = text.splitlines()
-            text = "\n".join(row for line in lines for row in filled(line, width, "", "  "))
-        print(text, file=sys.stderr, flush=True)
+            return "\n".join(row for line in lines for row in filled(line, width, "", "  "))
+    return text
+
+
+def _say(text: str) -> None:
+    """A message to the user, on stderr."""
+    with suppress(OSError, ValueError):
+        print(_shown(f"ids: {text}"), file=sys.stderr, flush=True)
 
 
 def _write_any_character() -> None:

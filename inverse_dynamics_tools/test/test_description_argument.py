@@ -37,6 +37,9 @@ def test_a_file_that_is_missing_is_named(tmp_path):
     for urdf in (missing, str(missing)):
         with pytest.raises(RobotError, match=r"no\.urdf: no such file; expected a robot descr"):
             Solver(RIGID_BODY, urdf=urdf)
+    missing.mkdir()
+    with pytest.raises(RobotError, match=r"no\.urdf: is a directory; expected a robot descr"):
+        Solver(RIGID_BODY, urdf=missing)
 
 
 def test_anything_else_is_refused():

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import sys
 
 import pytest
 
@@ -30,6 +31,16 @@ def test_short_help_fits_one_screen(ids, monkeypatch, verb):
     assert len(lines) <= 23  # and the prompt
     assert [line for line in lines if len(line) > 80] == []
     assert "--help" in lines[-1]
+
+
+def test_errors_fit_the_terminal(ids, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    for arguments in (["evalute"], ["evaluate", "no.csv", "--urdf", f"{'x' * 30}.urdf"]):
+        *_, err = ids(*arguments)
+        lines = err.splitlines()
+        assert len(lines) > 1
+        assert [line for line in lines if len(line) > 80] == []
 
 
 def test_rows_paragraphs_and_commands_are_told_apart():

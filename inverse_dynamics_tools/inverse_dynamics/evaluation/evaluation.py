@@ -265,7 +265,8 @@ def evaluate(
     if not found.text:
         return result
     note = f"{CAUSE}{found.text}" if found.causes else found.text
-    return replace(result, notes=(*result.notes, note))
+    others = tuple(other for other in result.notes if found.text not in other)
+    return replace(result, notes=(*others, note))
 
 
 def _topic_notes(bag: Path, motion: JointLog | JointStateTopic, expected: str) -> list[str]:

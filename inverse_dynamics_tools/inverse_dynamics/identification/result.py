@@ -87,11 +87,6 @@ class IdentifiedModel:
     torque_deviation: Floats  # (n,) N m: half the width of the 95 % band of measured - computed
     seen: Floats  # (3, n, 2): lowest and highest q, qd, qdd of the samples
 
-    @property
-    def joint_count(self) -> int:
-        """The number n."""
-        return len(self.rotor_inertia)
-
 
 @dataclass(frozen=True)
 class HeldOutBlock:

@@ -6,12 +6,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from inverse_dynamics.base.arrays import Floats
+    from collections.abc import Iterable
 
 
 def yaml_number(value: float) -> str:
@@ -23,19 +19,6 @@ def yaml_number(value: float) -> str:
 def yaml_list(numbers: Iterable[float]) -> str:
     """`[1, 2.5]`."""
     return f"[{', '.join(map(yaml_number, numbers))}]"
-
-
-def yaml_mapping(values: Mapping[str, float | Floats]) -> str:
-    """`{mass: 2, center: [0, 0, 0.1]}`."""
-    return f"{{{yaml_entries(values)}}}"
-
-
-def yaml_entries(values: Mapping[str, float | Floats]) -> str:
-    """The same without braces."""
-    return ", ".join(
-        f"{key}: {yaml_list(np.asarray(value)) if np.ndim(value) else yaml_number(float(value))}"
-        for key, value in values.items()
-    )
 
 
 def yaml_text(text: str) -> str:

@@ -41,7 +41,8 @@ def read_description(file: Path) -> str:
     name, xacro, arguments = f"{file}".partition(".xacro ")
     file = Path(name + xacro.rstrip()) if xacro else file
     if not os.path.isfile(file):  # Path.is_file() raises where the path is too long
-        raise RobotError(f"{file}: no such file; expected a robot description (URDF or .xacro)")
+        what = "is a directory" if os.path.isdir(file) else "no such file"
+        raise RobotError(f"{file}: {what}; expected a robot description (URDF or .xacro)")
     if file.suffix == ".xacro":
         return _expanded(file, arguments.split())
     data = read_bytes(file, "a URDF", RobotError)

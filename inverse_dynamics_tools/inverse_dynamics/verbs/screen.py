@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
+from rich.table import Table
 from rich.text import Text
 
 from inverse_dynamics.base.help_text import filled
@@ -84,6 +85,8 @@ def show(
                     prefix = ""
                 console.print(f"{prefix}{text}")
         else:
+            if isinstance(line, Table) and line.caption and console.is_terminal:
+                line.caption = "\n".join(filled(f"{line.caption}", console.width, "", ""))
             console.print(line)
 
 

@@ -254,7 +254,7 @@ _AFTER = {"description": "before", "given": "given", "stored": "stored", "motion
 def excitation_table(result: ExcitationResult) -> Table:
     """Motion of each joint, and uncertainty of its predicted torque before and after."""
     after = [_AFTER[name] for name in result.deviation]
-    columns = ("from", "to", "speed", "accel.", "torque", *after)
+    columns = ("from", "to", "speed", "acc.", "torque", *after)
     table = _table(*columns, text=("joint",))
     table.add_column("unit")
     for column in table.columns[1:]:
@@ -268,7 +268,7 @@ def excitation_table(result: ExcitationResult) -> Table:
             unit,
         )
     table.caption = (
-        "speed, acceleration, torque: greatest values as shares of their limits; then the standard "
+        "speed, acceleration (acc.), torque: greatest values as shares of their limits; then the standard "
         "deviation of predicted torques, mean over random states within the limits: before any recording"
         + (", after the given recordings" if "given" in result.deviation else "")
         + (", after the stored motion for the same time" if "stored" in result.deviation else "")

@@ -25,7 +25,7 @@ from inverse_dynamics.base.wording import listed
 from inverse_dynamics.evaluation.causes import bodies, efforts, motions, pairs, residuals
 from inverse_dynamics.evaluation.causes.arm import ArmModel
 from inverse_dynamics.evaluation.causes.fit import Fitting
-from inverse_dynamics.evaluation.causes.rival import PAGE, Rival
+from inverse_dynamics.evaluation.causes.rival import PAGE, Rival, printed
 from inverse_dynamics.evaluation.causes.samples import View
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ def meaning_of_efforts(
     best, *others = sorted(range(len(contest.rivals)), key=contest.score)
     name = contest.rivals[best].kind
     summary = ", ".join(
-        f"{contest.rivals[i].kind} is {100 * contest.score(i):.2g} % of the range off"
+        f"{contest.rivals[i].kind} is {printed(100 * contest.score(i), 2):g} % of the range off"
         for i in (best, *others)
     )
     if "current" not in predicted:

@@ -138,9 +138,8 @@ def too_small(view: View) -> tuple[Finding, ...]:
     if heavy.sum() < 2 or not 0 < np.max(share) <= _TOO_SMALL or view.arm.compared_without_gravity:
         return ()
     least, most = 1 / np.max(share), 1 / np.maximum(np.min(share), 1e-6)
-    reason = (
-        f"efforts are {least:.2g} to {most:.2g} times smaller than torques where those are large: "
-    )
+    factors = f"{printed(least, 2):g} to {printed(most, 2):g}"
+    reason = f"efforts are {factors} times smaller than torques where those are large: "
     currents = replace(_CURRENT, reason=f"{reason}they may be motor currents")
     moving = np.quantile(np.abs(view.computed - view.gravity), 0.95, axis=0)
     if (measured < _TOO_SMALL * moving)[heavy].any():
