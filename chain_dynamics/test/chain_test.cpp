@@ -12,6 +12,7 @@
 
 #include "example_robots.hpp"
 #include "random_chains.hpp"
+#include "reference.hpp"
 
 namespace chain_dynamics {
 namespace {
@@ -33,16 +34,11 @@ Parts soundParts() {
   return {chain.joints(), chain.links()};
 }
 
-// The text of the error that a chain with one change gives; empty if it gives none.
+// The text of the error that a chain with one change gives.
 std::string errorAfter(const std::function<void(Parts&)>& change) {
   Parts parts = soundParts();
   change(parts);
-  try {
-    Chain("arm", parts.joints, parts.links, parts.gravity, parts.tip);
-  } catch (const ModelError& error) {
-    return error.what();
-  }
-  return "";
+  return errorOf([&] { Chain("arm", parts.joints, parts.links, parts.gravity, parts.tip); });
 }
 
 TEST(ModelError, SaysWhereWhatExpectedGotAndRemedy) {
@@ -79,7 +75,7 @@ TEST(Chain, WithOtherGravityIsTheSameChainOtherwise) {
 }
 
 TEST(Chain, AcceptsSoundParts) {
-  EXPECT_EQ(errorAfter([](Parts&) {}), "");
+  EXPECT_EQ(errorAfter([](Parts&) {}), "no error");
 }
 
 TEST(Chain, RejectsNoJoints) {
@@ -151,7 +147,7 @@ TEST(Chain, RejectsLimitsThatExcludeEverything) {
   EXPECT_EQ(errorAfter([](Parts& parts) { parts.joints[2].limits.velocity = -3; }),
             "chain arm: joint joint3: velocity and effort limits: expected numbers >= 0, got -3 "
             "and inf; leave out what is unknown");
-  EXPECT_NE(errorAfter([](Parts& parts) { parts.joints[2].limits.upper = kNan; }), "");
+  EXPECT_NE(errorAfter([](Parts& parts) { parts.joints[2].limits.upper = kNan; }), "no error");
 }
 
 TEST(Chain, RejectsNegativeMassAndRotorInertia) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "chain_dynamics/error.hpp"
+#include "reference.hpp"
 
 namespace chain_dynamics::located_yaml_test {
 
@@ -16,16 +17,6 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 LocatedMap mapOf(const std::string& text) { return LocatedValue::ofText(text, "a.yaml").map(); }
-
-template <class Read>
-std::string errorOf(Read&& read) {
-  try {
-    read();
-  } catch (const ModelError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(LocatedYaml, ValuesHaveTheTypesThatTheyLookLike) {
   LocatedMap map = mapOf(

@@ -13,6 +13,7 @@
 #include "chain_dynamics/dynamic_components.hpp"
 #include "example_robots.hpp"
 #include "random_chains.hpp"
+#include "reference.hpp"
 
 namespace chain_dynamics {
 namespace {
@@ -141,20 +142,15 @@ TEST(ParameterSets, TorquesMayOverwriteAnInput) {
 }
 
 std::string errorOf(const Chain& chain, const Rows& rows, const Links& gravity) {
-  try {
-    checkParameterSets(chain, ParameterSets{rows, gravity});
-  } catch (const ModelError& error) {
-    return error.what();
-  }
-  return "";
+  return chain_dynamics::errorOf([&] { checkParameterSets(chain, ParameterSets{rows, gravity}); });
 }
 
 TEST(CheckParameterSets, AcceptsWhatFitsAndNegativeMasses) {
   const Chain chain = randomChain(3);
   Rows rows(3, chain.links());
   rows[1][2].mass = -1;
-  EXPECT_EQ(errorOf(chain, {}, {}), "");
-  EXPECT_EQ(errorOf(chain, rows, rows[0]), "");
+  EXPECT_EQ(errorOf(chain, {}, {}), "no error");
+  EXPECT_EQ(errorOf(chain, rows, rows[0]), "no error");
 }
 
 TEST(CheckParameterSets, NamesTheSetAndTheJointThatDoNotFit) {
