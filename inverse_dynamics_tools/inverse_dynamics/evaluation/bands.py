@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How far measured torques may be from an identified model's: half the width of a 95 % band, at each state.
 
-    half^2 = 1.96^2 (noise^2 + variance + level^2 + (share f)^2 + (fv beyond / 2)^2) + (h r)^2
+    half^2 = 1.96^2 (noise^2 + variance + level^2 + (share f)^2 + (fv beyond / 2)^2) + (0.95 h r)^2
 
 noise     of held-out data while the joint moves
 variance  of the torques by the covariance of the model's parameters
@@ -28,14 +28,16 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import ArmUncertainty, Solver
     from inverse_dynamics.base.arrays import Floats
 
-NORMAL = 1.96  # 97.5 % of a normal distribution, in standard deviations
+NORMAL = 1.96  # half the interval that holds 95 % of a normal distribution, in standard deviations
+UNIFORM = 0.95  # the same of a uniform distribution, by its greatest value
 
 LEVEL = 0.02
 """Of the greatest torque: standard deviation of offsets from day to day. Sensors of torque and current have
 an accuracy of 1 to 2 % of their range."""
 
-SHARE = 0.1
-"""Of friction, from day to day: it falls by a third while an arm warms up."""
+SHARE = 0.12
+"""Of friction, from day to day: standard deviation of what is anywhere from 0.8 to 1.2, as friction of an arm that
+warms up falls by a third."""
 
 _REST = 0.02  # of the greatest velocity: friction has its law's value from about twice that on
 _REST_WIDTHS = 2.0  # the same in widths of the step
@@ -71,7 +73,7 @@ class TorqueBand:
             + extrapolated**2
         )
         at_rest = (fc + fl * gravity + fs) * rest_share(qd, self.friction, self.seen)
-        return np.asarray(np.sqrt(NORMAL**2 * variance + at_rest**2))
+        return np.asarray(np.sqrt(NORMAL**2 * variance + (UNIFORM * at_rest) ** 2))
 
 
 def rest_share(qd: Floats, friction: Sequence[Mapping[str, float]], seen: Floats) -> Floats:

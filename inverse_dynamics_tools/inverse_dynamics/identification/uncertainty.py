@@ -102,11 +102,15 @@ def _level(recording: str, blocks: Sequence[HeldOutBlock], solver: Solver) -> Le
 
 
 def with_levels(band: TorqueBand, levels: Sequence[Level]) -> TorqueBand:
-    """The band, of whose levels recordings tell: what is usual counts as two of them."""
+    """The band, of whose levels R recordings tell: what is usual counts as two of them.
+
+    A recording differs from the mean of R - 1 others; a new one will differ from that of all, by a little less.
+    """
+    count = len(levels)
 
     def level(usual: Floats, found: Sequence[Floats]) -> Floats:
-        squares = _USUAL_COUNTS * usual**2 + np.square(found).sum(axis=0)
-        return np.asarray(np.sqrt(squares / (_USUAL_COUNTS + len(found))))
+        squares = (1 - 1 / max(count, 1) ** 2) * np.square(found).sum(axis=0)
+        return np.asarray(np.sqrt((_USUAL_COUNTS * usual**2 + squares) / (_USUAL_COUNTS + count)))
 
     return replace(
         band,

@@ -51,7 +51,7 @@ results, written whole or not at all:
   metrics.json            errors of each joint
   torques.png             measured and computed torques and the error, over time
   bag/                    recording with /torques (computed) and /torques_gt (measured)
-  series.npz              time, q, qd, qdd, effort (as recorded), measured, computed, for numpy.load()
+  series.npz              time, q, qd, qdd, effort (as recorded), measured, computed, band, for numpy.load()
   evaluation.json         assumptions: filter, messages left out, model, meaning of efforts
 
 results of several recordings:
