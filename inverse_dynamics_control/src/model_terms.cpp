@@ -3,12 +3,31 @@
 
 #include <utility>
 
+#include "option_checks.hpp"
+
 namespace inverse_dynamics_control {
 inline namespace v2 {
+namespace {
+
+constexpr double kFast = 1e3;  // rad/s: where all of friction but the viscous part is constant
+
+/// What shares leave, of each joint.
+OwnedVector left(const Shares& shares, const std::string& where,
+                 const std::vector<std::string>& joint_names) {
+  OwnedVector each = shares.values();
+  if (each.size() == 1) {
+    each = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(joint_names.size()), each[0]);
+  }
+  requireJointNumbers(where, each, Range::kShare, "1", joint_names);
+  each = 1.0 - each.array();
+  return each;
+}
+
+}  // namespace
 
 ModelTerms::ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver,
                        const Compensated& compensated, const std::string& law)
-    : solver_(std::move(solver)), compensated_(compensated) {
+    : solver_(std::move(solver)) {
   if (solver_ == nullptr) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
         inverse_dynamics_solver::errorText(law + ": solver", "missing", "an initialized solver",
@@ -18,6 +37,17 @@ ModelTerms::ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver,
   H_ = Eigen::MatrixXd::Zero(n, n);
   bias_ = Eigen::VectorXd::Zero(n);
   g_ = Eigen::VectorXd::Zero(n);
+  const auto of = [&](const Shares& shares, const char* term) {
+    return left(shares, law + ": compensated: " + term, jointNames());
+  };
+  gravity_ = of(compensated.gravity, "gravity");
+  coriolis_ = of(compensated.coriolis, "coriolis");
+  friction_ = of(compensated.friction, "friction");
+  viscous_ = of(compensated.viscous.value_or(compensated.friction), "viscous");
+  slope_ = Eigen::VectorXd::Zero(n);
+  if ((viscous_ - friction_).isZero(0)) return;
+  const Eigen::VectorXd q = Eigen::VectorXd::Zero(n), fast = Eigen::VectorXd::Constant(n, kFast);
+  slope_ = (solver_->getFrictionVector(q, 2 * fast) - solver_->getFrictionVector(q, fast)) / kFast;
 }
 
 void ModelTerms::torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& a,
@@ -30,23 +60,24 @@ void ModelTerms::torques(const ConstVectorRef& q, const ConstVectorRef& qd, cons
 void ModelTerms::components(const ConstVectorRef& q, const ConstVectorRef& qd,
                             inverse_dynamics_solver::MatrixRef H, VectorRef bias) {
   solver_->getDynamicComponents(q, qd, H, bias, g_);
-  if (compensated_.coriolis) bias.setZero();
-  if (!compensated_.gravity) bias += g_;
+  bias.array() *= coriolis_.array();
+  if (!gravity_.isZero(0)) bias += gravity_.cwiseProduct(g_);
 }
 
 void ModelTerms::gravity(const ConstVectorRef& q, VectorRef g) const {
-  if (compensated_.gravity) {
-    g.setZero();
-  } else {
-    solver_->getGravityVector(q, g);
-  }
+  g.setZero();
+  if (gravity_.isZero(0)) return;
+  solver_->getGravityVector(q, g);
+  g.array() *= gravity_.array();
 }
 
 void ModelTerms::friction(const ConstVectorRef& q, const ConstVectorRef& v, VectorRef f) const {
-  if (compensated_.friction) {
-    f.setZero();
-  } else {
-    solver_->getFrictionVector(q, v, f);
+  f.setZero();
+  if (friction_.isZero(0) && viscous_.isZero(0)) return;
+  solver_->getFrictionVector(q, v, f);
+  for (Eigen::Index j = 0; j < f.size(); ++j) {
+    const double viscous = slope_[j] * v[j];
+    f[j] = friction_[j] * (f[j] - viscous) + viscous_[j] * viscous;
   }
 }
 

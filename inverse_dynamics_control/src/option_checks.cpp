@@ -19,6 +19,8 @@ bool isWithin(double value, Range range) {
       return std::isfinite(value) && value > 0;
     case Range::kPositiveOrAbsent:
       return value > 0;
+    case Range::kShare:
+      return value >= 0 && value <= 1;
     case Range::kRate:
       return value >= 1e-3 && value <= 1e6;
   }
@@ -35,6 +37,8 @@ const char* inWords(Range range) {
       return "a finite number above zero";
     case Range::kPositiveOrAbsent:
       return "a number above zero, or infinity for no limit";
+    case Range::kShare:
+      return "a share from 0 to 1";
     case Range::kRate:
       return "a number from 0.001 to 1e6";
   }

@@ -18,6 +18,7 @@ enum class Range {
   kNotNegative,       ///< finite and >= 0
   kPositive,          ///< finite and > 0
   kPositiveOrAbsent,  ///< > 0, infinity for none
+  kShare,             ///< from 0 to 1
   kRate,              ///< from 0.001 to 1e6: far beyond what any arm needs, far from overflow
 };
 

@@ -65,6 +65,10 @@ TEST(ComputedTorque, WhatTheRobotCompensatesIsLeftOut) {
   EXPECT_LT((all - torque({false, false, true}) - solver->getFrictionVector(r.qd)).norm(),
             rounding);
   EXPECT_LT((torque({true, true, true}) - solver->getInertiaMatrix(x.q) * r.qdd).norm(), rounding);
+  const Eigen::Vector2d shares(0.25, 1.0);
+  const Eigen::VectorXd g = solver->getGravityVector(x.q);
+  EXPECT_LT((all - torque({shares, false, false}) - shares.cwiseProduct(g)).norm(), rounding);
+  EXPECT_THROW(torque({1.5, false, false}), InvalidParameterValueException);
 }
 
 TEST(ComputedTorque, FrictionIsThatOfTheReferenceVelocity) {

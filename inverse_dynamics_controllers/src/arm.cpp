@@ -106,7 +106,18 @@ Setup ArmSource::setup(const std::string& managers_description, unsigned update_
 
 inverse_dynamics_control::Compensated compensatedByRobot(const Setup& setup) {
   const auto& compensated = setup.parameters.compensated_by_robot;
-  return {compensated.gravity, compensated.coriolis, compensated.friction};
+  const auto shares = [&](const char* term, const std::vector<double>& given, bool of_all) {
+    const std::string name = std::string("compensated_by_robot.shares.") + term;
+    if (given.empty()) return inverse_dynamics_control::Shares(of_all);
+    return inverse_dynamics_control::Shares(jointNumbers(name, given, setup.arm.joints));
+  };
+  const auto& given = compensated.shares;
+  inverse_dynamics_control::Compensated found;
+  found.gravity = shares("gravity", given.gravity, compensated.gravity);
+  found.coriolis = compensated.coriolis;
+  found.friction = shares("coulomb", given.coulomb, compensated.friction);
+  if (!given.viscous.empty()) found.viscous = shares("viscous", given.viscous, false);
+  return found;
 }
 
 LawOptions lawOptions(const Setup& setup, const std::string& friction_source) {

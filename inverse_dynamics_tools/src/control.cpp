@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <variant>
 #include <vector>
 
 #include "annotations.hpp"
@@ -112,11 +113,40 @@ auto limitField(const char* name, OwnedVector OutputLimits::*member, const char*
       [member](LawOptions& o, const Vector& values) { o.limits.*member = values; }, doc);
 }
 
+/// Shares: a number, or one of each joint.
+using OneOrEach = std::variant<double, Vector>;
+
+OneOrEach of(const Shares& shares) {
+  if (shares.values().size() == 1) return shares.values()[0];
+  return Vector(shares.values());
+}
+
+Shares sharesOf(const OneOrEach& given) {
+  return std::visit([](const auto& values) { return Shares(values); }, given);
+}
+
+auto shareField(const char* name, Shares Compensated::*member) {
+  return Field<Compensated, OneOrEach, OneOrEach>(
+      name, [member](const Compensated& c) { return of(c.*member); },
+      [member](Compensated& c, const OneOrEach& given) { c.*member = sharesOf(given); });
+}
+
+auto viscousField() {
+  using Given = std::optional<OneOrEach>;
+  return Field<Compensated, Given, Given>(
+      "viscous", [](const Compensated& c) { return c.viscous ? Given(of(*c.viscous)) : Given(); },
+      [](Compensated& c, const Given& given) {
+        c.viscous = given ? std::optional(sharesOf(*given)) : std::nullopt;
+      },
+      "of viscous friction; None: as friction");
+}
+
 void bindLawOptions(py::module_& module) {
   using C = Compensated;
-  bindOptions<0>(module, "Compensated", "What the robot adds by itself.", "",
-                 Field{"gravity", &C::gravity}, Field{"coriolis", &C::coriolis},
-                 Field{"friction", &C::friction});
+  bindOptions<0>(module, "Compensated",
+                 "What the robot adds by itself: shares, 0 to 1, of all joints or (n,).", "",
+                 shareField("gravity", &C::gravity), shareField("coriolis", &C::coriolis),
+                 shareField("friction", &C::friction), viscousField());
   using F = FrictionOptions;
   bindOptions<0>(module, "FrictionOptions", "How friction is compensated; speeds in rad/s.", "",
                  Field{"source", &F::source}, Field{"dead_band", &F::dead_band},

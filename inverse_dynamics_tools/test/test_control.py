@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bindings of the control laws; the laws themselves are tested in C++."""
 
+import re
+
 import numpy as np
 import pytest
 from conftest import RIGID_BODY, UR10
@@ -96,6 +98,24 @@ def test_feed_forward_of_an_identified_robot(identified):
     law = FeedForward(identified, compensated, at=ModelState.MEASURED)
     tau, _ = law.update(q, qd, q_ref, qd_ref, qdd_ref, effort=effort, period=PERIOD)
     np.testing.assert_allclose(tau, identified.inertia_matrix(q) @ qdd_ref + effort, atol=ROUNDING)
+
+
+def test_shares_of_each_joint_are_left_out():
+    """Friction of <dynamics>: damping qd + friction sign(qd)."""
+    urdf = re.sub("<dynamics [^>]*>", '<dynamics damping="3" friction="2"/>', urdf_of("ur10"))
+    rubs = Solver(RIGID_BODY, urdf, *CHAINS["ur10"], parameters={"urdf_friction": True})
+    share = rng.uniform(0, 1, (4, N))
+    compensated = Compensated(share[0], share[1], share[2], share[3])
+    law = FeedForward(rubs, options(compensated=compensated))
+    fast = 1 + np.abs(qd_ref)  # friction is blended in below
+    tau, _ = law.update(q, qd, q_ref, fast, qdd_ref, effort=np.zeros(N), period=PERIOD)
+    g, c = rubs.gravity_vector(q_ref), rubs.coriolis_vector(q_ref, fast)
+    left = [(1 - share[0]) * g, (1 - share[1]) * c, (1 - share[2]) * 2, (1 - share[3]) * 3 * fast]
+    expected = rubs.inertia_matrix(q_ref) @ qdd_ref + sum(left)
+    np.testing.assert_allclose(tau, expected, atol=1e-9)
+    message = "feed-forward: compensated: gravity: joint shoulder_pan_joint: .* a share from 0 to 1"
+    with pytest.raises(InvalidParameterError, match=message):
+        FeedForward(rubs, options(compensated=Compensated(gravity=1.2)))
 
 
 def test_limits_and_safe_torque(solver):

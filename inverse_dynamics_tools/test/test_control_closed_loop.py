@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from simulation_arms import CHAINS, pendulum, simulated, urdf_of
 
 from inverse_dynamics import Solver
 from inverse_dynamics.control import (
+    Compensated,
     ComputedTorque,
     FeedForward,
     Gains,
@@ -25,7 +27,7 @@ from inverse_dynamics.control import (
     damping_for,
 )
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
-from inverse_dynamics.simulation.model import Payload, SimulatedRobot
+from inverse_dynamics.simulation.model import JointFriction, Payload, SimulatedRobot
 from inverse_dynamics.simulation.physics import Command, Response, drive
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
@@ -47,6 +49,15 @@ MOVE = {
     "panda": np.array([1.2, 0.8, -0.7, 0.9, -1.0, 0.8, -1.2]),
 }
 TIMES = np.array([0.0, 1.2, 2.4])
+COULOMB, VISCOUS = 1.0, 2.0  # N m; N m s/rad
+UR_COULOMB, UR_VISCOUS = (0.8, 0.8, 0.7, 0.8, 0.8, 0.8), (0.9, 0.9, 0.8, 0.9, 0.9, 0.9)
+
+
+def rubbing(name: str) -> str:
+    """The URDF with friction in each joint."""
+    dynamics = f'<dynamics damping="{VISCOUS}" friction="{COULOMB}"/></joint>'
+    bare = re.sub(r"<dynamics [^>]*>", "", urdf_of(name))
+    return re.sub(r'(<joint [^>]*"revolute">.*?)</joint>', r"\1" + dynamics, bare, flags=re.S)
 
 
 @cache
@@ -63,9 +74,12 @@ def fast_motion(name: str) -> WaypointTrajectory:
     return motion
 
 
-def options_of(name: str, robot: SimulatedRobot) -> LawOptions:
+def options_of(
+    name: str, robot: SimulatedRobot, compensated: Compensated | None = None
+) -> LawOptions:
     damping = damping_for(solver_of(name), HOME[name], 5.0, PERIOD)
-    return LawOptions(effort_limit=robot.chain.effort, damping=damping)
+    compensated = compensated or Compensated()
+    return LawOptions(effort_limit=robot.chain.effort, damping=damping, compensated=compensated)
 
 
 def follow_fast_motion(robot: SimulatedRobot, name: str, law: Command) -> tuple[Response, Floats]:
@@ -80,10 +94,19 @@ def follow_fast_motion(robot: SimulatedRobot, name: str, law: Command) -> tuple[
 class Tracking:
     """Computed torque on the fast motion; keeps the statuses of all updates."""
 
-    def __init__(self, name: str, robot: SimulatedRobot, frequency: float, ratio: float) -> None:
+    def __init__(
+        self,
+        name: str,
+        robot: SimulatedRobot,
+        frequency: float,
+        ratio: float,
+        solver: Solver | None = None,
+        compensated: Compensated | None = None,
+    ) -> None:
         n = len(robot.dofs)
         self.gains = Gains.of(np.full(n, frequency), np.full(n, ratio))
-        self.law = ComputedTorque(solver_of(name), self.gains, options_of(name, robot))
+        options = options_of(name, robot, compensated)
+        self.law = ComputedTorque(solver or solver_of(name), self.gains, options)
         self.statuses: set[Status] = set()
         self.references = list(zip(*fast_motion(name).at(np.arange(10000) * PERIOD), strict=True))
 
@@ -112,6 +135,37 @@ def test_computed_torque_tracks_ten_times_better_than_pd_of_the_same_gains(name:
     assert 10 * np.abs(error).max() < np.abs(pd_error).max() < 0.1
     assert 10 * np.sqrt((error**2).mean()) < np.sqrt((pd_error**2).mean())
     assert tracking.statuses == {Status.OK}
+
+
+@pytest.mark.parametrize("name", CHAINS)
+def test_a_robot_that_compensates_shares_itself_follows_as_one_that_does_not(name: str) -> None:
+    """Hidden shares of gravity and friction, each joint its own.
+
+    Viscous friction that the robot compensates no longer damps what the law, by the reference's velocity, leaves of
+    Coulomb friction at a reversal. So with Universal Robots' shares the error is 1.24 and 1.18 times as great, and with
+    independent random ones up to 2.2 times in the UR10's wrist.
+    """
+    n = len(HOME[name])
+    solver = Solver(RIGID_BODY, rubbing(name), *CHAINS[name], parameters={"urdf_friction": True})
+    gravity, friction = np.random.default_rng(0).uniform(0, 1, (2, n))
+    equal = np.array([gravity, friction, friction])
+    of_ur = np.array([gravity, *(np.resize(s, n) for s in (UR_COULOMB, UR_VISCOUS))])
+
+    def greatest(shares: Floats, known: Compensated) -> float:
+        left = JointFriction((1 - shares[1]) * COULOMB, (1 - shares[2]) * VISCOUS)
+        robot = simulated(name, friction=left)
+        tracking = Tracking(name, robot, 20.0, 1.0, solver, known)
+
+        def command(k: int, q: Floats, qd: Floats) -> Floats:
+            return tracking.command(k, q, qd) + shares[0] * solver.gravity_vector(q)
+
+        return float(np.abs(follow_fast_motion(robot, name, command)[1]).max())
+
+    none = greatest(0 * equal, Compensated())
+    for shares, most in ((equal, 1.1), (of_ur, 1.3)):
+        known = Compensated(gravity=shares[0], friction=shares[1], viscous=shares[2])
+        assert greatest(shares, known) <= most * none
+    assert greatest(of_ur, Compensated()) > 2 * none
 
 
 @pytest.mark.parametrize("name", CHAINS)

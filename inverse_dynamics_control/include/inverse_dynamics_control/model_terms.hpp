@@ -29,7 +29,8 @@ class ModelTerms {
  public:
   /// @param solver  initialized; it is kept.
   /// @param law     who asks, for the text of errors.
-  /// Throws inverse_dynamics_solver::InvalidParameterValueException: no solver.
+  /// Throws inverse_dynamics_solver::InvalidParameterValueException: no solver; shares that aren't one or
+  /// one of each joint, or not from 0 to 1.
   /// UninitializedException: the solver isn't initialized.
   ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver, const Compensated& compensated,
              const std::string& law);
@@ -44,28 +45,30 @@ class ModelTerms {
     chain_dynamics::unwrap(jointTypes(), reference, q);
   }
 
-  /// `H(q) a + C(q, qd) qd + g(q)`, without the terms that are compensated.
+  /// `H(q) a + C(q, qd) qd + g(q)`, without what is compensated.
   ///
   /// @param q,qd,a    n each; rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).
   /// @param[out] tau  n; N m (prismatic N).
   void torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& a,
                VectorRef tau);
 
-  /// `H(q)`, n x n, and `C(q, qd) qd + g(q)`, n, without the terms that are compensated.
+  /// `H(q)`, n x n, and `C(q, qd) qd + g(q)`, n, without what is compensated.
   void components(const ConstVectorRef& q, const ConstVectorRef& qd,
                   inverse_dynamics_solver::MatrixRef H, VectorRef bias);
 
-  /// `g(q)`, n; zero if compensated.
+  /// What is left of `g(q)`, n.
   void gravity(const ConstVectorRef& q, VectorRef g) const;
 
-  /// `f(q, v)`, n; zero if compensated.
+  /// What is left of `f(q, v)`, n.
   void friction(const ConstVectorRef& q, const ConstVectorRef& v, VectorRef f) const;
 
  private:
   std::shared_ptr<const InverseDynamicsSolver> solver_;
-  Compensated compensated_;
   chain_dynamics::OwnedMatrix H_;
   OwnedVector bias_, g_;
+  // n each: shares that the robot doesn't compensate; friction but for the viscous part
+  OwnedVector gravity_, coriolis_, friction_, viscous_;
+  OwnedVector slope_;  // n: of viscous friction; N m s/rad (prismatic N s/m)
 };
 
 }  // namespace v2

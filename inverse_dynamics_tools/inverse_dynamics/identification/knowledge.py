@@ -159,7 +159,8 @@ def weights_of_links(
     def of(block: Block) -> Floats:
         still = np.zeros_like(block.q)
         columns = model.regressor(block.q, still, still).reshape(*block.q.shape, -1, 10)
-        return DOUBT * np.einsum("njkc,kc->knj", columns, links)
+        weights: Floats = DOUBT * np.einsum("njkc,kc->knj", columns, links)
+        return weights
 
     return [list(link) for link in zip(*map(of, blocks), strict=True)]
 
