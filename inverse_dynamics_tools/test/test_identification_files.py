@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import yaml
 from conftest import JOINTS, URDF, motion
 from identified_arms import arm, identification, predicted_torques, simulated_torques
 
@@ -24,6 +25,7 @@ from inverse_dynamics.results import identifications, robot_files
 from inverse_dynamics.results.hold_out import hold_out
 from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.results.model_files import model_file_text
+from inverse_dynamics.results.universal_robots import friction_request
 from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.link_parameters import turned
 from inverse_dynamics.robot.robots import RIGID_BODY, Robot
@@ -148,6 +150,17 @@ def test_a_model_that_its_reader_computes_otherwise_leaves_nothing(found, tmp_pa
     with pytest.raises(SolverError, match=r"arm_model\.yaml"):
         write_identification(found, tmp_path / "arm.yaml")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_request_of_universal_robots_driver_has_the_shares_of_friction(found, files):
+    left = [{**law, "fv": 0.1 * law["fv"], "fc": 0.25 * law["fc"]} for law in found.model.friction]
+    compensated = replace(found.model, friction=tuple(left))
+    whole = replace(found.robot, plugin=RIGID_BODY, model=files.model, friction=True)
+    request = yaml.safe_load(friction_request(replace(found, robot=whole, model=compensated)))
+    assert request["parameters"]["viscous_scale"] == pytest.approx([0.9] * 6)
+    assert request["parameters"]["coulomb_scale"] == pytest.approx([0.75] * 6, abs=1e-3)
+    with pytest.raises(RobotError, match="expected a model with friction in every joint"):
+        friction_request(found)
 
 
 def test_all_files_or_none(found, tmp_path, monkeypatch):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from conftest import fails
 from simulation_arms import joint, link, robot
 
@@ -291,6 +292,22 @@ def test_torques_of_another_robot_are_refused(tmp_path):
     file = table(tmp_path / "other.csv", other)
     with pytest.raises(PayloadError, match="no body at the tip explains the torques of fer_joint"):
         estimate_payload(file, "panda_simulated")
+
+
+def test_the_request_of_universal_robots_driver_has_the_load(ids, tmp_path):
+    recording = table(tmp_path / "quiet.csv", loaded(noise=1e-3))
+    options = ("--robot", "panda_simulated", "--out", "payload.yaml", "--ur", "request.yaml")
+    assert ids("payload", recording, *options, "--figures", "none")[0] == 0
+    body, flat = (
+        yaml.safe_load(Path(name).read_text()) for name in ("payload.yaml", "request.yaml")
+    )
+    last = Path("request.yaml").read_text().splitlines()[-1]
+    nested = yaml.safe_load(last.partition("instead of all above: ")[2])["payload"]
+    names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    assert flat["mass"] == nested["m"] == body["mass"]
+    assert list(flat["center_of_gravity"].values()) == body["center_of_mass"]
+    assert nested["com"] == flat["center_of_gravity"]
+    assert [flat[i] for i in names] == [nested[i] for i in names] == body["inertia"]
 
 
 def test_of_efforts_without_the_gravity_of_the_arm_a_load_is_found(tmp_path):

@@ -13,6 +13,7 @@ from inverse_dynamics.errors import OutputError
 from inverse_dynamics.figures.contacts import payload_figure
 from inverse_dynamics.figures.plots import check_formats, save_figure
 from inverse_dynamics.report.external_torques import render_payload
+from inverse_dynamics.results.universal_robots import UPPER, payload_request
 from inverse_dynamics.results.yaml_text import yaml_list, yaml_number
 
 if TYPE_CHECKING:
@@ -22,16 +23,16 @@ if TYPE_CHECKING:
     from inverse_dynamics.identification.payload import Payload
 
 _SUFFIXES = (".yaml", ".yml")
-_UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))  # ixx ixy ixz iyy iyz izz
 
 
-def payload_files(out: Path, figures: Sequence[str]) -> tuple[Path, ...]:
-    """All that write_payload() writes: the YAML; the JSON, the page and the figures beside it."""
+def payload_files(out: Path, figures: Sequence[str], ur: Path | None = None) -> tuple[Path, ...]:
+    """All that write_payload() writes: the YAML; the JSON, the page and the figures beside it; ur."""
     beside = (".json", ".html")
     return (
         out,
         *map(out.with_suffix, beside),
         *(out.with_suffix(f".{suffix}") for suffix in figures),
+        *([] if ur is None else [ur]),
     )
 
 
@@ -39,6 +40,7 @@ def check_payload_output(
     out: Path,
     figures: Sequence[str],
     *,
+    ur: Path | None = None,
     overwrite: bool = False,
     inputs: Iterable[Path | None] = (),
 ) -> None:
@@ -47,7 +49,7 @@ def check_payload_output(
     if out.suffix not in _SUFFIXES:
         raise OutputError(f"{out}: expected a name ending in .yaml; name another file with --out")
     inputs = tuple(inputs)
-    for file in payload_files(out, figures):
+    for file in payload_files(out, figures, ur):
         check_output_file(file, overwrite=overwrite, inputs=inputs)
 
 
@@ -57,17 +59,21 @@ def write_payload(
     *,
     overwrite: bool = False,
     figures: Sequence[str] = ("png",),
+    ur: Path | None = None,
 ) -> None:
     """Write all files of a load, or none of them.
 
-    out: of the YAML; the others have its name and suffixes of their own. Raises OutputError.
+    out: of the YAML; the others have its name and suffixes of their own. ur: of payload_request(). Raises OutputError.
     """
     out = Path(out)
     inputs = (payload.evaluation.bag, payload.empty, *payload.evaluation.robot.files)
-    check_payload_output(out, figures, overwrite=overwrite, inputs=inputs)
+    check_payload_output(out, figures, ur=ur, overwrite=overwrite, inputs=inputs)
     load, *beside = payload_files(out, figures)
+    beside = [*([] if ur is None else [ur]), *beside]
     with files_written_whole([*beside, load]) as fresh:  # the load last
-        data, page, *drawn, body = fresh
+        if ur is not None:
+            write_text(fresh[0], payload_request(payload, ur.name))
+        data, page, *drawn, body = fresh[ur is not None :]
         write_text(data, json_text(summary(payload)))
         write_text(page, render_payload(payload))
         save_figure(lambda: payload_figure(payload), *drawn)
@@ -139,4 +145,4 @@ def summary(payload: Payload) -> dict[str, Any]:
 
 
 def _upper(matrix: Floats) -> list[float]:
-    return [float(matrix[entry]) for entry in _UPPER]
+    return [float(matrix[entry]) for entry in UPPER]

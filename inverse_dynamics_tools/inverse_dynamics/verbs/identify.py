@@ -116,6 +116,12 @@ def declare(options: Options) -> None:
         "also write a MuJoCo model of the chain",
         Path,
     )
+    options.add(
+        "--ur FILE",
+        "also write the shares of friction that the robot compensates, as the request of Universal Robots' driver: "
+        "efforts are its commands, and --robot has a model with all of the friction",
+        Path,
+    )
     options.overrides(*CHAIN, *RECORDING)
 
 
@@ -139,6 +145,7 @@ def run(arguments: argparse.Namespace) -> None:
         summary,
         write_identification,
     )
+    from inverse_dynamics.results.universal_robots import friction_request
     from inverse_dynamics.results.urdf_export import mjcf_text, urdf_text
     from inverse_dynamics.verbs.screen import progress_bar, show
 
@@ -146,7 +153,11 @@ def run(arguments: argparse.Namespace) -> None:
     robot = _robot(arguments)
     loads = [recording for recording, _ in arguments.known_payload]
     inputs = (*arguments.recordings, *arguments.hold_out, *loads, *robot.files)
-    more = {"--urdf-out": arguments.urdf_out, "--mjcf-out": arguments.mjcf_out}
+    more = {
+        "--urdf-out": arguments.urdf_out,
+        "--mjcf-out": arguments.mjcf_out,
+        "--ur": arguments.ur,
+    }
     more = {option: file for option, file in more.items() if file is not None}
     overwrite = replaces(arguments, identification_files(arguments.out)) and (
         arguments.overwrite or not any(file.exists() for file in more.values())
@@ -166,7 +177,7 @@ def run(arguments: argparse.Namespace) -> None:
             hold_out(found, recording, progress=progress, **options)
             for recording in arguments.hold_out
         ]
-    texts = {"--urdf-out": urdf_text, "--mjcf-out": mjcf_text}
+    texts = {"--urdf-out": urdf_text, "--mjcf-out": mjcf_text, "--ur": friction_request}
     files = write_identification(
         found,
         arguments.out,

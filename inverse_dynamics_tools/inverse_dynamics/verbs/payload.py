@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.verbs.options import (
@@ -56,6 +57,11 @@ def declare(options: Options) -> None:
         "the load, a YAML file; a .json file, a page and the figure are written next to it",
         required=True,
     )
+    options.add(
+        "--ur FILE",
+        "also write the load as the request of Universal Robots' driver, for `ros2 service call`",
+        Path,
+    )
     options.shared("--json")
     options.figures()
     options.overrides(*SOLVER, *RECORDING)
@@ -74,9 +80,10 @@ def run(arguments: argparse.Namespace) -> None:
 
     robot = chosen_robot(arguments)
     inputs = (arguments.bag, arguments.empty, arguments.urdf, *robot.files)
-    files = payload_files(arguments.out, arguments.figures)
+    files = payload_files(arguments.out, arguments.figures, arguments.ur)
     overwrite = replaces(arguments, files)
-    check_payload_output(arguments.out, arguments.figures, overwrite=overwrite, inputs=inputs)
+    written = {"figures": arguments.figures, "ur": arguments.ur, "overwrite": overwrite}
+    check_payload_output(arguments.out, inputs=inputs, **written)
 
     from inverse_dynamics.identification.payload import estimate_payload
 
@@ -88,7 +95,7 @@ def run(arguments: argparse.Namespace) -> None:
             progress=progress,
             **given_overrides(arguments),
         )
-    write_payload(payload, arguments.out, overwrite=overwrite, figures=arguments.figures)
+    write_payload(payload, arguments.out, **written)
     show(
         arguments,
         summary(payload),
