@@ -68,7 +68,8 @@ TEST(ComputedTorque, WhatTheRobotCompensatesIsLeftOut) {
   const Eigen::Vector2d shares(0.25, 1.0);
   const Eigen::VectorXd g = solver->getGravityVector(x.q);
   EXPECT_LT((all - torque({shares, false, false}) - shares.cwiseProduct(g)).norm(), rounding);
-  EXPECT_THROW(torque({1.5, false, false}), InvalidParameterValueException);
+  EXPECT_THROW(torque({1.5, false, false}),
+               inverse_dynamics_solver::InvalidParameterValueException);
 }
 
 TEST(ComputedTorque, FrictionIsThatOfTheReferenceVelocity) {
