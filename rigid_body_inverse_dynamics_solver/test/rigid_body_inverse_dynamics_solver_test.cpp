@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
+#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
@@ -14,26 +15,12 @@ namespace rigid_body_inverse_dynamics_solver::rigid_body_inverse_dynamics_solver
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::ParameterUninitializedException;
+using inverse_dynamics_solver::conformance::errorOf;
 using inverse_dynamics_solver::conformance::robotsFile;
 using inverse_dynamics_solver::conformance::textOf;
 
 const std::string kFeasible = "franka_gaz2019_feasible";
 const std::string kUr10 = "ur10_identified";
-
-/// The text of the E that `call` throws; a failure if it throws nothing or something else.
-template <class E, class Call>
-std::string errorOf(Call call) {
-  try {
-    call();
-  } catch (const E& e) {
-    return e.what();
-  } catch (const std::exception& e) {
-    ADD_FAILURE() << "another exception than promised: " << e.what();
-    return "";
-  }
-  ADD_FAILURE() << "no exception";
-  return "";
-}
 
 void expectContains(const std::string& text, const std::vector<std::string>& parts) {
   for (const std::string& part : parts) {
