@@ -59,9 +59,6 @@ def beyond_docs(text: str, page: str, repository: str = "") -> str:
 
 def on_page_markdown(markdown: str, *, page: Any, **_: Mapping[str, Any]) -> str:
     """Called by MkDocs for each page."""
-    markdown = markdown.replace(
-        "`cpp/index.html`", '<a href="../cpp/index.html">`cpp/index.html`</a>'
-    )
     repository = os.environ.get("DOCS_REPOSITORY_URL", "").rstrip("/")
     return beyond_docs(markdown, page.file.src_uri, repository)
 
