@@ -28,7 +28,7 @@ bool isMeaning(const std::string& word) {
 }
 
 std::string asConfigured(const EffortOptions& options) {
-  return "as " + options.configured_by + " says";
+  return options.configured_by.empty() ? "by default" : "as " + options.configured_by + " says";
 }
 
 Effort withGains(Effort effort, const EffortOptions& options) {
@@ -36,11 +36,11 @@ Effort withGains(Effort effort, const EffortOptions& options) {
     return effort;
   }
   if (options.drive_gains.empty()) {
-    throw ConfigurationError(options.where + ": effort means current, " + effort.stated_by +
-                             ": expected drive gains [N m/A], got none from " + options.gains_from +
-                             " nor from " + options.plugin +
-                             "; give drive_gains, one per joint, or put them into " +
-                             options.configured_by);
+    throw ConfigurationError(
+        options.where + ": effort means current, " + effort.stated_by +
+        ": expected drive gains [N m/A], got none from " + options.gains_from + " nor from " +
+        options.plugin + "; give drive_gains, one per joint, or put them into " +
+        (options.configured_by.empty() ? "a run configuration" : options.configured_by));
   }
   effort.drive_gains = options.drive_gains;
   return effort;
@@ -161,11 +161,12 @@ std::vector<std::string> effortNotes(const Effort& effort, const EffortOptions& 
     }
   };
   contradicted(options.format, "the recording's format");
-  if (effort.stated_by != kOption) {
+  if (effort.stated_by != kOption && !options.configured_by.empty()) {
     contradicted(options.configuration, options.configured_by);
   }
   if (!own_gains.empty() && !effort.drive_gains.empty() && effort.drive_gains != own_gains) {
-    notes.push_back("drive gains are those of " + options.configured_by +
+    notes.push_back("drive gains are those of " +
+                    (options.configured_by.empty() ? options.gains_from : options.configured_by) +
                     "; the solver's own are " + figures("%.4g", own_gains, " ") + " N m/A");
   }
   if (effort.meaning == kTorqueWithoutGravity) {

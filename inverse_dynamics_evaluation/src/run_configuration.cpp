@@ -106,6 +106,7 @@ EffortOptions effortOptions(const RunConfiguration& robot,
   } else {
     options.where = "robot " + robot.name;
     options.gains_from = robot.file;
+    if (robot.file == robot.urdf) options.configured_by.clear();  // a description alone
   }
   return options;
 }

@@ -70,6 +70,13 @@ def test_what_the_data_tell_goes_before_the_run_configuration_and_that_is_said(b
     )
 
 
+def test_a_description_alone_states_nothing(bags, robot):
+    alone = replace(robot, file=robot.urdf)
+    assert evaluate(bags / "torque", alone).effort.summary.startswith("torque, by default")
+    notes = evaluate(bags / "current", alone, effort_is="auto").notes
+    assert not [note for note in notes if "effort is taken" in note]
+
+
 @pytest.mark.parametrize("configured", ["torque", "torque_without_gravity"])
 def test_where_the_data_dont_tell_the_configuration_counts(tmp_path, robot, configured):
     """As without gravity, or where all axes are upright."""

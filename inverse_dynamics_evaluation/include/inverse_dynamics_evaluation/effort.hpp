@@ -39,7 +39,7 @@ struct EffortOptions {
   std::string where;                    ///< who states it: `robot NAME`, a parameter
   std::string gains_from;               ///< where drive gains can be given: a file, a parameter
   std::string plugin;                   ///< of the solver
-  /// What states `configuration` and `drive_gains`, in words.
+  /// What states `configuration` and `drive_gains`, in words; empty: nothing, only a description.
   std::string configured_by = "the run configuration";
 };
 
