@@ -76,7 +76,9 @@ def errors_of(fitter: ArmFitter, fit: ArmFit, block: Block) -> Floats:
 def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     """The fit to all blocks, chosen by leaving out each part in turn.
 
-    Of long recordings, choices take samples at equal distances; the fit takes all.
+    A step off zero velocity is a matter of a day: choices are made with it, so that it doesn't blur them. The fit
+    is without, as it would be a constant force at rest. Of long recordings, choices take samples at equal distances;
+    the fit takes all.
     """
     blocks = moving(blocks)
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
@@ -85,7 +87,7 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     alternatives: list[_Alternative] = []
     start = None
     for law in LAWS:
-        options = ArmFitOptions(law, prior_strength=STRENGTHS[1])
+        options = ArmFitOptions(law, prior_strength=STRENGTHS[1], shift=True)
         start = whole[law] = fitter.fit(parts.data, options, start)
         starts = [start] * len(parts)
         for strength in STRENGTHS:
@@ -97,11 +99,15 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
         ArmFitOptions(best.law, prior_strength=best.prior_strength),
         whole[best.law],
     )
+    unshifted = parts.left_out(best.law, best.prior_strength, best.fits, shift=False)
     # as solvers compute torques: the delay isn't made up for
     as_recorded = _cut([block.thinned(step) for block in blocks])
     errors = np.abs(
         np.concatenate(
-            [errors_of(fitter, f, part) for f, part in zip(best.fits, as_recorded, strict=True)]
+            [
+                errors_of(fitter, f, part)
+                for f, part in zip(unshifted.fits, as_recorded, strict=True)
+            ]
         )
     )
     qd = np.concatenate([part.fitted[1] for part in as_recorded])
@@ -128,10 +134,16 @@ class _Parts:
         return len(self._parts)
 
     def left_out(
-        self, law: str, strength: float, starts: Sequence[ArmFit], passes: int = _PASSES
+        self,
+        law: str,
+        strength: float,
+        starts: Sequence[ArmFit],
+        *,
+        passes: int = _PASSES,
+        shift: bool = True,
     ) -> _Alternative:
         """Fits to all parts but one, each from a start, and the errors of that part."""
-        options = ArmFitOptions(law, prior_strength=strength, most_passes=passes)
+        options = ArmFitOptions(law, prior_strength=strength, most_passes=passes, shift=shift)
         found = _Alternative(law, strength, [], [])
         for k, (part, start) in enumerate(zip(self._parts, starts, strict=True)):
             options.without = k
@@ -184,7 +196,9 @@ def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[fl
         costs = []
         for delay in (center - step, center, center + step):
             later = fitter.data(together(_later(blocks, delay, thinned)))
-            options = ArmFitOptions(_DELAY_LAW, prior_strength=STRENGTHS[1], most_passes=_PASSES)
+            options = ArmFitOptions(
+                _DELAY_LAW, prior_strength=STRENGTHS[1], most_passes=_PASSES, shift=True
+            )
             start = fitter.fit(later, options, start)
             # samples at the ends of blocks are fewer where the delay is greater
             costs.append(2 * float(np.log(start.noise).sum()))
