@@ -149,7 +149,7 @@ def test_half_of_the_recording_predicts_the_other(recordings):
 def test_eight_seconds_are_enough_for_a_model(recordings):
     bag = recordings / "ur10_exciting_trajectory"
     windows = [trained_on(bag, begin, begin + 8.0, 3) for begin in (0.0, 6.5, 13.0, 19.5)]
-    assert np.mean([rms(errors).mean() for errors in windows]) <= 1.4
+    assert np.mean([rms(errors).mean() for errors in windows]) <= 1.45
 
 
 # A robot that is known: the Panda with other masses and friction, whose torques are 12 ms late.
