@@ -96,7 +96,7 @@ def choices_told(found: Identification) -> list[tuple[str, str]]:
 
 def _level_told(level: Level, units: Sequence[str]) -> str:
     """Of each joint."""
-    offsets = (f"{x:+.2g} {unit}" for x, unit in zip(level.offset, units, strict=True))
+    offsets = (f"{x:+.3g} {unit}" for x, unit in zip(level.offset, units, strict=True))
     shares = ", ".join(f"{100 * x:+.0f} %" for x in level.share)
     return f"against the other recordings' model: offset {', '.join(offsets)}; friction {shares}"
 
