@@ -141,6 +141,9 @@ void readTable(const std::optional<LocatedValue>& value, RunConfiguration& robot
   if (const auto sign = map.optional("sign")) {
     for (const LocatedValue& entry : sign->entries()) robot.sign.push_back(entry.number());
   }
+  if (const auto gears = map.optional("gears")) {
+    for (const LocatedValue& entry : gears->entries()) robot.gears.push_back(entry.number());
+  }
   if (const auto rate = map.optional("rate")) {
     robot.rate = rate->number();
     if (*robot.rate <= 0) rate->fail("samples per second, above zero");

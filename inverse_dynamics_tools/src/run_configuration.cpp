@@ -75,6 +75,7 @@ Examples
       Field{"scale", &Robot::scale, "of a table: KEY=NUMBER or KEY=UNIT, a text each"},
       Field{"sign", &Robot::sign, "of a table: 1 or -1 for each joint"},
       Field{"rate", &Robot::rate, "of a table without time: samples per second"},
+      Field{"gears", &Robot::gears, "of motors that are recorded: ratios, or rows of a matrix"},
       Field{"source", &Robot::source, "where description and values come from"})
       .def_property_readonly(
           "files",

@@ -50,6 +50,40 @@ def fails(path, text, expected, joints=("a",)):
     assert str(caught.value).startswith(str(path))
 
 
+@pytest.mark.parametrize("ratios", [(100.0, -80.0, 80.0, 50.0, 50.0, 40.0)])
+@pytest.mark.parametrize("coupled", [False, True], ids=["ratios", "matrix"])
+def test_states_of_motors_become_those_of_joints(ratios, coupled):
+    """The last motor of a wrist turns with the one before."""
+    q, qd, _, stamps = motion()
+    G = np.diag(ratios)
+    G[5, 4] = -40.0 if coupled else 0.0
+    effort = 10 * q
+    motors = {"time": stamps * 1e-9, "q": q @ G.T, "qd": qd @ G.T}
+    motors["effort"] = effort @ np.linalg.inv(G)
+    power = (motors["effort"] * motors["qd"]).sum(axis=1)
+    np.testing.assert_allclose(power, (effort * qd).sum(axis=1), rtol=1e-9)  # gears lose nothing
+    gears = G.ravel() if coupled else ratios
+    found = evaluate(motors, "ur10_simulated", gears=[*map(float, gears)])
+    for given, expected in ((found.log.q, q), (found.log.qd, qd), (found.measured, effort)):
+        np.testing.assert_allclose(given, expected, rtol=1e-9, atol=1e-9)
+
+
+def test_currents_of_coupled_motors_are_refused(file):
+    write_table(
+        file,
+        {
+            "time": np.arange(9.0) / 100,
+            **{
+                f"{kind}.{joint}": np.arange(9.0)
+                for kind in ("position", "velocity", "current")
+                for joint in "ab"
+            },
+        },
+    )
+    with pytest.raises(BagError, match="gears: expected torques of the motors"):
+        read_recording(file, ("a", "b"), form=LogFormat(gears=(50.0, 0.0, 50.0, 50.0)))
+
+
 @pytest.mark.parametrize("delimiter", [",", ";", "\t", " ", "   "])
 def test_columns_are_matched_by_name_whatever_is_between_them(file, delimiter):
     q, qd, _, stamps = motion()
@@ -312,6 +346,8 @@ def test_what_the_names_do_not_say_is_stated(file):
         (LogFormat(scale=("torgue=2",)), "scale: expected one of time, position"),
         (LogFormat(sign=(1.0, -1.0)), "sign: expected 1 or -1 for each of 1 joint, got 1, -1"),
         (LogFormat(sign=(2.0,)), "sign: expected 1 or -1 for each of 1 joint, got 2"),
+        (LogFormat(gears=(1.0, 2.0)), "gears: expected 1 ratios or the 1 numbers of a matrix, got"),
+        (LogFormat(gears=(0.0,)), "gears: expected a matrix that can be inverted, as each joint"),
         (LogFormat(columns="q=x"), "columns: x: expected columns of the file, got x; the file has"),
         (LogFormat("q=x", ("effort=furlong",)), "scale: expected a number other than 0 or one of"),
     ],

@@ -53,6 +53,8 @@ struct RunConfiguration {
   std::vector<double> sign;        ///< of each joint, 1 or -1; none: 1
   std::optional<double> rate;      ///< Hz; of samples in a table without time
   std::string source;              ///< where description and figures come from
+  /// G of `q_motor = G q`, where states of motors are recorded: n ratios, or n x n numbers row by row.
+  std::vector<double> gears;
 };
 
 /// What stands instead of a run configuration's fields; nothing: the field stays.

@@ -117,7 +117,7 @@ def open_motion(
 ) -> JointLog | bags.JointStateTopic:
     """The samples, but for those of joint states, which may be too many for the memory.
 
-    The arguments are those of read_recording(). Joint states that a scale or a sign is stated for are read.
+    The arguments are those of read_recording(). Joint states that a scale, a sign or gears are stated for are read.
     """
     path = Path(path) if isinstance(path, str) else path
     check_clock(clock)
@@ -141,7 +141,7 @@ def open_motion(
     if types.get(topic) == joint_trajectories.MESSAGE_TYPE:
         trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
         log = joint_trajectories.joint_log_of(trajectories, joints, clock, topic, recording.storage)
-    elif form.scale or form.sign:
+    elif form.scale or form.sign or form.gears:
         log = bags.read_joint_log(path, joints, topic=topic, clock=clock, progress=progress)
     else:
         return bags.open_joint_states(path, topic)

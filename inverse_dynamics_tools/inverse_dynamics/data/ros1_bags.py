@@ -109,7 +109,9 @@ def read_ros1_log(
     if clock == "auto":
         clock = "header" if all(any(series.header) for series in found) else "receive"
     start, table = _merged(path, found, clock)
-    log = read_table_log(table, joints, LogFormat(scale=form.scale, sign=form.sign))
+    log = read_table_log(
+        table, joints, LogFormat(scale=form.scale, sign=form.sign, gears=form.gears)
+    )
     notes = log.notes
     if left_out:
         notes = (f"{counted(left_out, 'message')} without all joints left out", *notes)

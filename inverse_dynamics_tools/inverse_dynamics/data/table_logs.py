@@ -54,6 +54,7 @@ if TYPE_CHECKING:
 _LONGEST_PERIOD = 0.5  # s: no recording of a motion is as slow
 _BETWEEN_RUNS, _PERIODS_BETWEEN_RUNS = 1.0, 50.0  # s; what the time base takes for a gap
 _UNITS_OF_TIME = ((5e5, "ns"), (5e2, "us"), (0.0, "ms"))
+_SINGULAR = 1e-9  # of a matrix of gears: its determinant by the lengths of its rows
 _MOTION = (POSITION, VELOCITY, ACCELERATION)
 _NEEDED_FOR = {
     POSITION: "torques depend on them",
@@ -81,18 +82,20 @@ class LogFormat:
 
     columns: see match_columns(). scale: texts `KEY=FACTOR` or `KEY=FACTOR,FACTOR,...`, one for each joint:
     what the quantity's numbers are multiplied by, a number or one of UNITS. sign: of each joint, 1 or -1;
-    -1 turns its positions, velocities and efforts around. rate: Hz, of a table without time.
+    -1 turns its positions, velocities and efforts around. rate: Hz, of a table without time. gears: of motors
+    whose states are recorded, `q_motor = G q`: a ratio of each joint, or the rows of G one after the other.
     """
 
     columns: str = ""
     scale: Sequence[str] = ()
     sign: Sequence[float] = ()
     rate: float | None = None
+    gears: Sequence[float] = ()
 
     @staticmethod
     def of(robot: Any) -> LogFormat:
         """What a run configuration states."""
-        return LogFormat(robot.columns, robot.scale, robot.sign, robot.rate)
+        return LogFormat(robot.columns, robot.scale, robot.sign, robot.rate, robot.gears)
 
     def factors(self, where: str) -> dict[str, Floats]:
         """What `scale` states, by quantity. Raises BagError."""
@@ -134,7 +137,35 @@ class LogFormat:
                 )
             signs = np.array(self.sign) if self.sign and kind != TIME else 1.0
             scaled[kind] = columns * (factors * signs)
-        return scaled
+        return self._behind_gears(scaled, joints, where) if self.gears else scaled
+
+    def _behind_gears(
+        self, numbers: Mapping[str, Floats], joints: int, where: str
+    ) -> dict[str, Floats]:
+        """Those of joints, where the numbers are those of motors: q = inv(G) q_motor, tau = G' tau_motor."""
+        G = np.array(self.gears)
+        if G.size not in (joints, joints**2):
+            raise BagError(
+                f"{where}: gears: expected {joints} ratios or the {joints**2} numbers of a matrix, got {G.size}"
+            )
+        G = np.diag(G) if G.size == joints else G.reshape(joints, joints)
+        if abs(np.linalg.det(G)) <= _SINGULAR * np.prod(np.linalg.norm(G, axis=1)):
+            raise BagError(
+                f"{where}: gears: expected a matrix that can be inverted, as each joint has a motor, got "
+                f"{listed([f'{x:g}' for x in self.gears], 20)}"
+            )
+        if CURRENT in numbers and np.count_nonzero(G - np.diag(np.diag(G))):
+            raise BagError(
+                f"{where}: gears: expected torques of the motors, which a matrix turns into torques of the joints, got "
+                "currents; state --columns effort=... and --scale effort=... with the motors' N m/A"
+            )
+        to_joints = {EFFORT: G, CURRENT: G, TIME: None}
+        return {
+            kind: columns
+            if (by := to_joints.get(kind, np.linalg.inv(G).T)) is None
+            else columns @ by
+            for kind, columns in numbers.items()
+        }
 
 
 PLAIN = LogFormat()

@@ -129,6 +129,7 @@ def evaluate(
     scale: Sequence[str] | None = None,
     sign: Sequence[float] | None = None,
     rate: float | None = None,
+    gears: Sequence[float] | None = None,
     clock: Clock = "auto",
     start: float | None = None,
     end: float | None = None,
@@ -150,7 +151,7 @@ def evaluate(
         What recorded efforts mean, one of EFFORT_CHOICES.
     drive_gains
         N m/A (prismatic N/A) of efforts that are currents.
-    columns, scale, sign, rate
+    columns, scale, sign, rate, gears
         What the names of a table's columns don't say, see table_logs.LogFormat.
     accelerations, cutoff
         One of accelerations.METHODS; Hz, of a low-pass.
@@ -200,6 +201,7 @@ def evaluate(
         scale=scale,
         sign=sign,
         rate=rate,
+        gears=gears,
     )
     source = Path(bag) if isinstance(bag, str) else bag
     bag = source if isinstance(source, Path) else Path("arrays")

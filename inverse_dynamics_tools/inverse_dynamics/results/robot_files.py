@@ -109,5 +109,7 @@ def _table(robot: Robot) -> list[str]:
             stated=robot.rate is not None,
         ),
     ]
-    used = any((robot.columns, robot.scale, robot.sign, robot.rate))
+    gears = yaml_list(robot.gears)
+    rows.append(_key("  gears", gears, "of recorded motors", stated=bool(robot.gears)))
+    used = any((robot.columns, robot.scale, robot.sign, robot.rate, robot.gears))
     return ["table:", *(row for row in rows if not row.startswith("# "))] if used else []

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 # Overrides of the run configuration, by name.
 CHAIN = ("--urdf", "--xacro", "--root", "--tip", "--gravity", "--joints", "--parameter")
 SOLVER = (*CHAIN, "--plugin", "--no-friction", "--payload")
-TABLE = ("--columns", "--scale", "--sign", "--rate")
+TABLE = ("--columns", "--scale", "--sign", "--rate", "--gears")
 RECORDING = ("--topic", "--effort-is", "--drive-gains", *TABLE, "--cutoff", "--from", "--to")
 FILTER = ("--accelerations", "--clock", "--without-rule")
 
@@ -278,6 +278,12 @@ _SHARED = dict(
         _entry(
             "--sign S,S,...",
             "of a table: 1 or -1 for each joint; -1 turns its positions, velocities and efforts around",
+            numbers,
+        ),
+        _entry(
+            "--gears G,G,...",
+            "positions, velocities and efforts are those of motors: a gear ratio of each joint, or the rows of the "
+            "matrix G of q_motor = G q, one after the other",
             numbers,
         ),
         _entry("--rate HZ", "of a table without time: samples per second", positive_number),

@@ -206,7 +206,7 @@ def beyond_reach(view: View) -> tuple[Finding, ...]:
         "motor_side",
         "Positions of the motors",
         f"{reach}the joints' limits in rad: they may be those of the motors, before the gears",
-        "divide positions and velocities by the gear ratios, and multiply efforts by them",
+        "divide positions and velocities by the gear ratios, and multiply efforts by them: --gears",
     )
     q, qd, qdd = (values / _DEGREE for values in view.motion)
     if beyond_limits(view.moving(q, qd, qdd)).any():
