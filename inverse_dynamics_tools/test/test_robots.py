@@ -307,6 +307,7 @@ def test_a_new_robot_is_a_file_that_reads_back_as_it_was_stated(tmp_path):
         columns="q=q*, i=cur*",
         scale=("q=deg", "i=1,1,1,2,2,2"),
         sign=(1.0, -1.0, 1.0, 1.0, 1.0, 1.0),
+        gears=(50.0, 50.0, 50.0, 40.0, 40.0, 40.0),
         rate=125.0,
         cutoff=7.5,
         accelerations="low-pass",
