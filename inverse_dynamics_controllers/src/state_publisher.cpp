@@ -13,12 +13,7 @@ using control_msgs::msg::JointTrajectoryControllerState;
 using inverse_dynamics_control::JointState;
 using inverse_dynamics_control::Reference;
 
-namespace {
-
-std::vector<double> numbers(const Eigen::VectorXd& values) {
-  return {values.data(), values.data() + values.size()};
-}
-
+// What one cycle has to tell.
 struct Cycle {
   explicit Cycle(Eigen::Index joints)
       : state(joints), reference(joints), tau(Eigen::VectorXd::Zero(joints)) {}
@@ -29,6 +24,12 @@ struct Cycle {
   bool has_reference = false;
   Eigen::VectorXd tau;
 };
+
+namespace {
+
+std::vector<double> numbers(const Eigen::VectorXd& values) {
+  return {values.data(), values.data() + values.size()};
+}
 
 void write(const Cycle& cycle, const std::vector<chain_dynamics::JointType>& types,
            JointTrajectoryControllerState& message) {

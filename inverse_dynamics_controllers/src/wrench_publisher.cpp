@@ -16,14 +16,15 @@ using inverse_dynamics_control::ContactSensing;
 using sensor_msgs::msg::JointState;
 using std_msgs::msg::Bool;
 
-namespace {
-
+// Of one cycle.
 struct Estimate {
   std::int64_t nanoseconds = 0;
   Eigen::VectorXd torques;
   std::array<double, 6> wrench{};
   bool contact = false;
 };
+
+namespace {
 
 void write(const std::array<double, 6>& values, geometry_msgs::msg::Wrench& wrench) {
   wrench.force.x = values[0];

@@ -23,7 +23,6 @@ using inverse_dynamics_control::VelocitySource;
 using inverse_dynamics_solver::Parameters;
 using inverse_dynamics_solver::WrenchFrame;
 
-constexpr int kReminder = 10'000;  // ms between two log lines that say the same
 const std::string kNamespace = "external_torques.";
 
 // Names of LiveContact::counts().

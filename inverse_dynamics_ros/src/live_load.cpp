@@ -22,8 +22,6 @@ using inverse_dynamics_solver::VariableGravity;
 using sensor_msgs::msg::Imu;
 
 constexpr std::chrono::milliseconds kStep(10);
-constexpr int kReminder = 10'000;  // ms between two log lines that say the same
-
 [[noreturn]] void throwUnchangeable(const std::string& plugin) {
   throw InvalidParameterValueException(errorText("gravity", "the solver's gravity can't change",
                                                  "a solver with the capability VariableGravity",

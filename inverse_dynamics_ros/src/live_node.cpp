@@ -25,8 +25,6 @@ using inverse_dynamics_evaluation::OnlineDerivative;
 using sensor_msgs::msg::JointState;
 using std_msgs::msg::String;
 
-constexpr int kReminder = 10'000;  // ms between two log lines that say the same
-
 std::vector<double>& assign(std::vector<double>& numbers, const Eigen::VectorXd& vector) {
   numbers.assign(vector.data(), vector.data() + vector.size());
   return numbers;

@@ -15,6 +15,8 @@
 
 namespace inverse_dynamics_ros {
 
+inline constexpr int kReminder = 10'000;  ///< ms between two log lines that say the same
+
 /// A solver, and the names of its joints and links.
 struct LiveRobot {
   std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver> solver;
