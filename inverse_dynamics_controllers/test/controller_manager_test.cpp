@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Two arms of one robot under one controller manager, each with a controller of its own.
+// What a controller manager loads, and two arms of one robot under it, each with a controller of its own.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -64,7 +64,7 @@ class TwoArms : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove(file_); }
 
-  std::string type(const std::string& controller) {
+  static std::string type(const std::string& controller) {
     return "inverse_dynamics_controllers/" + controller;
   }
 
@@ -125,6 +125,18 @@ class TwoArms : public testing::Test {
   const std::shared_ptr<controller_manager::ControllerManager> manager_ =
       std::make_shared<controller_manager::ControllerManager>(executor_, robot(), true, "manager");
 };
+
+class Load : public TwoArms, public testing::WithParamInterface<const char*> {};
+
+TEST_P(Load, AControllerManagerFindsIt) {
+  EXPECT_NE(manager_->load_controller("under_test", type(GetParam())), nullptr);
+}
+
+INSTANTIATE_TEST_SUITE_P(Controllers, Load,
+                         testing::Values("ExternalWrenchBroadcaster", "FeedForwardController",
+                                         "GravityCompensationController",
+                                         "InverseDynamicsController",
+                                         "PdGravityCompensationController"));
 
 TEST_F(TwoArms, EachControllerServesItsOwn) {
   ASSERT_EQ(configure("left"), return_type::OK);
