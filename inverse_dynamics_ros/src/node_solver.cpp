@@ -15,13 +15,14 @@ void declareSolverParameters(rclcpp::Node& node) {
   }
 }
 
-inverse_dynamics_solver::Parameters givenParameters(rclcpp::Node& node) {
+inverse_dynamics_solver::Parameters givenParameters(rclcpp::Node& node, const std::string& prefix) {
   inverse_dynamics_evaluation::SolverParameters given;
   const auto& overrides = node.get_node_parameters_interface()->get_parameter_overrides();
   for (const auto& [name, value] : overrides) {
+    if (name.rfind(prefix, 0) != 0) continue;
     const auto found =
         inverse_dynamics_solver::detail::valueOf(name, rclcpp::Parameter(name, value));
-    if (found) given.emplace(name, *found);
+    if (found) given.emplace(name.substr(prefix.size()), *found);
   }
   return given;
 }

@@ -17,7 +17,9 @@ void declareSolverParameters(rclcpp::Node& node);
 
 /// What is set from outside (launch file, command line), without defaults.
 ///
+/// @param prefix  of the names that are meant, which is left out: `retime.`.
 /// @throws inverse_dynamics_solver::InvalidParameterValueException: byte arrays.
-inverse_dynamics_solver::Parameters givenParameters(rclcpp::Node& node);
+inverse_dynamics_solver::Parameters givenParameters(rclcpp::Node& node,
+                                                    const std::string& prefix = "");
 
 }  // namespace inverse_dynamics_ros

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "retiming.hpp"
+
+#include <algorithm>
+#include <chain_dynamics/robot_description.hpp>
+#include <cmath>
+#include <inverse_dynamics_evaluation/joint_matching.hpp>
+#include <rclcpp/duration.hpp>
+
+#include "user_error.hpp"
+
+namespace inverse_dynamics_ros {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using inverse_dynamics_evaluation::listed;
+using inverse_dynamics_timing::Path;
+using inverse_dynamics_timing::Retimed;
+using inverse_dynamics_timing::Trajectory;
+
+constexpr int kPlaces = 1000;       // of a path, at which positions are checked
+constexpr double kRounding = 1e-6;  // rad
+
+// One number for each joint, as given, else as described.
+VectorXd chosen(const std::string& name, const std::vector<double>& given,
+                const VectorXd& described) {
+  if (given.empty()) return described;
+  if (given.size() == 1) return VectorXd::Constant(described.size(), given.front());
+  if (static_cast<Index>(given.size()) == described.size())
+    return VectorXd::Map(given.data(), described.size());
+  throw UserError("parameter 'limits." + name + "'",
+                  std::to_string(described.size()) + " numbers, or one for all joints",
+                  std::to_string(given.size()), "give one for each joint");
+}
+
+// None where the user gives none.
+VectorXd optional(const std::string& name, const std::vector<double>& given, Index joints) {
+  return given.empty() ? VectorXd() : chosen(name, given, VectorXd::Zero(joints));
+}
+
+void copy(const VectorXd& from, std::vector<double>& to) { to.assign(from.begin(), from.end()); }
+
+}  // namespace
+
+Retiming::Retiming(const NodeRobot& robot, const std::string& description,
+                   const retime::Params& params)
+    : solver_(robot.makeSolver(description)),
+      joints_(
+          inverse_dynamics_evaluation::recordedNames(robot.configuration(), solver_->jointNames())),
+      params_(params) {
+  describeLimits(description);
+}
+
+void Retiming::describeLimits(const std::string& description) {
+  const auto n = static_cast<Index>(joints_.size());
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  VectorXd torque = VectorXd::Constant(n, kNone), velocity = torque;
+  lower_ = -torque, upper_ = torque;
+  if (!description.empty()) {
+    const auto described = chain_dynamics::robotFromUrdf(description);
+    for (Index j = 0; j < n; ++j) {
+      const std::size_t joint =
+          described.jointIndex(solver_->jointNames()[static_cast<std::size_t>(j)]);
+      if (joint == chain_dynamics::RobotDescription::kNone) continue;
+      const chain_dynamics::JointLimits& limits = described.joints[joint].limits;
+      torque[j] = limits.effort, velocity[j] = limits.velocity;
+      lower_[j] = limits.lower, upper_[j] = limits.upper;
+    }
+  }
+  limits_.torque = chosen("torque", params_.limits.torque, torque);
+  if (!limits_.torque.allFinite()) {
+    throw UserError("parameter 'limits.torque'",
+                    "limits of torque [N m], here or in the robot description",
+                    "neither for all joints", "set it");
+  }
+  limits_.velocity = chosen("velocity", params_.limits.velocity, velocity).cwiseMin(1e6);
+  limits_.acceleration = optional("acceleration", params_.limits.acceleration, n);
+  limits_.jerk = optional("jerk", params_.limits.jerk, n);
+}
+
+Retiming::JointTrajectory Retiming::timed(const JointTrajectory& path, double slower) const {
+  const Eigen::MatrixXd points = waypoints(path);
+  const Path way =
+      params_.deviation < 0 ? Path::spline(points) : Path::lines(points, params_.deviation);
+  checkRanges(way);
+  inverse_dynamics_timing::RetimeOptions options;
+  options.margin = params_.margin;
+  const Retimed fastest = inverse_dynamics_timing::retime(*solver_, way, limits_, options);
+  if (!fastest) throw UserError(inverse_dynamics_timing::text(fastest.refusal, joints_));
+  JointTrajectory result = sampled(inverse_dynamics_timing::slowed(fastest.trajectory, slower));
+  result.header = path.header;
+  return result;
+}
+
+// n x m, rad
+Eigen::MatrixXd Retiming::waypoints(const JointTrajectory& path) const {
+  const auto& names = path.joint_names;
+  if (names.size() != joints_.size() ||
+      !std::is_permutation(names.begin(), names.end(), joints_.begin())) {
+    throw UserError("path", "the joints " + listed(joints_), listed(names),
+                    "see the parameter 'joints'");
+  }
+  Eigen::MatrixXd points(names.size(), path.points.size());
+  for (std::size_t k = 0; k < path.points.size(); ++k) {
+    const std::vector<double>& q = path.points[k].positions;
+    if (q.size() != names.size()) {
+      throw UserError("path: point " + std::to_string(k), "a position for each joint",
+                      std::to_string(q.size()), "complete it");
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto joint = std::find(joints_.begin(), joints_.end(), names[i]) - joints_.begin();
+      points(joint, static_cast<Index>(k)) = q[i];
+    }
+  }
+  return points;
+}
+
+// A spline may leave them between waypoints.
+void Retiming::checkRanges(const Path& path) const {
+  VectorXd q(lower_.size()), dq(q), ddq(q);
+  for (int k = 0; k <= kPlaces; ++k) {
+    path.evaluate(path.start() + (path.end() - path.start()) * k / kPlaces, q, dq, ddq);
+    for (Index j = 0; j < q.size(); ++j) {
+      if (q[j] >= lower_[j] - kRounding && q[j] <= upper_[j] + kRounding) continue;
+      throw UserError("path: joint " + joints_[static_cast<std::size_t>(j)],
+                      "positions from " + std::to_string(lower_[j]) + " to " +
+                          std::to_string(upper_[j]) + " rad",
+                      std::to_string(q[j]),
+                      "move waypoints, or set deviation for straight lines between them");
+    }
+  }
+}
+
+Retiming::JointTrajectory Retiming::sampled(const Trajectory& motion) const {
+  JointTrajectory result;
+  result.joint_names = joints_;
+  const auto intervals = static_cast<std::size_t>(std::ceil(motion.duration() * params_.rate));
+  result.points.resize(intervals + 1);
+  VectorXd q(lower_.size()), qd(q), qdd(q);
+  for (std::size_t k = 0; k <= intervals; ++k) {
+    const double t = std::min(static_cast<double>(k) / params_.rate, motion.duration());
+    motion.evaluate(t, q, qd, qdd);
+    auto& point = result.points[k];
+    point.time_from_start = rclcpp::Duration::from_seconds(t);
+    copy(q, point.positions);
+    copy(qd, point.velocities);
+    copy(qdd, point.accelerations);
+    copy(solver_->getTorques(q, qd, qdd), point.effort);
+  }
+  return result;
+}
+
+}  // namespace inverse_dynamics_ros
