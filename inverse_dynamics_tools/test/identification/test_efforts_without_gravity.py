@@ -69,7 +69,7 @@ def test_masses_that_are_wrong_by_a_tenth_cost_little(recordings, identified, tm
 @ROBOTS
 @pytest.mark.parametrize("mistake", ["turned base", "masses twice"])
 def test_a_wrong_model_of_gravity_is_reported(recordings, name, mistake):
-    """49 and 50 of 50 on each robot; here the first ones."""
+    """Of 50 seeds of the UR10 with a turned base all are; here the first ones."""
     robot = replace(load_robot(f"{name}_simulated"), effort="torque_without_gravity", joints=())
     for seed in range(4):
         random = np.random.default_rng(seed)
