@@ -2,15 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <class_loader/class_loader.hpp>
 #include <cmath>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
-#include <rclcpp_components/node_factory.hpp>
 #include <string>
 #include <vector>
 
-#include "retiming.hpp"
+#include "retime_node.hpp"
 
 namespace inverse_dynamics_ros {
 namespace {
@@ -93,10 +91,7 @@ TEST(Retiming, RefusesWhatCannotBeTimed) {
 TEST(RetimeNode, AnswersEachPathOnce) {
   rclcpp::init(0, nullptr);
   {
-    class_loader::ClassLoader loader(RETIME_LIBRARY);
-    const auto factory = loader.createInstance<rclcpp_components::NodeFactory>(
-        loader.getAvailableClasses<rclcpp_components::NodeFactory>().at(0));
-    auto node = factory->create_node_instance(rclcpp::NodeOptions().parameter_overrides(
+    const auto node = std::make_shared<RetimeNode>(rclcpp::NodeOptions().parameter_overrides(
         {{"plugin_name", kSolver}, {"robot_description", kUrdf}, {"ids.gravity", kGravity}}));
     const auto tester = std::make_shared<rclcpp::Node>("tester");
     std::vector<JointTrajectory> answers;
@@ -104,7 +99,7 @@ TEST(RetimeNode, AnswersEachPathOnce) {
         "retime/trajectory", 10, [&](const JointTrajectory& answer) { answers.push_back(answer); });
     const auto publisher = tester->create_publisher<JointTrajectory>("retime/path", 10);
     rclcpp::executors::SingleThreadedExecutor executor;
-    executor.add_node(node.get_node_base_interface());
+    executor.add_node(node);
     executor.add_node(tester);
     const auto until = [&](const auto& condition) {
       for (int k = 0; k < 1000 && !condition(); ++k)

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Program: the node of retime_node.hpp by itself.
+///
+///     ros2 run inverse_dynamics_ros retime --ros-args -p plugin_name:=package/Class
+
+#include "retime_node.hpp"
+#include "run_node.hpp"
+
+int main(int argc, char** argv) {
+  return inverse_dynamics_ros::runNode<inverse_dynamics_ros::RetimeNode>(argc, argv, "retime");
+}
