@@ -6,6 +6,7 @@
 #include <chain_dynamics/robot_description.hpp>
 #include <cmath>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
+#include <limits>
 #include <rclcpp/duration.hpp>
 
 #include "user_error.hpp"
