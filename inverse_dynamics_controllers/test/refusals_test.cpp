@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <rclcpp/version.h>
-
 #include <chrono>
 #include <std_msgs/msg/string.hpp>
 #include <thread>
@@ -76,20 +74,6 @@ TEST_F(Refusals, AMisspeltParameter) {
   expectRefused(but("limits.effrot", rclcpp::ParameterValue(Numbers{1.0})),
                 "parameter 'limits.effrot': the node doesn't declare it; did you mean "
                 "'limits.effort'?");
-}
-
-TEST_F(Refusals, AMisspeltParameterThatIsSet) {
-  ASSERT_TRUE(configure(good())) << log.text();
-  try {
-    set("gains.natural_freq", rclcpp::ParameterValue(Numbers{6.0}));
-    ADD_FAILURE() << "no exception";
-  } catch (const rclcpp::exceptions::ParameterNotDeclaredException& error) {
-    EXPECT_NE(std::string(error.what()).find("'gains.natural_freq'"), std::string::npos);
-#if RCLCPP_VERSION_MAJOR >= 21  // humble's words are rclcpp's
-    EXPECT_NE(std::string(error.what()).find("did you mean 'gains.natural_frequency'?"),
-              std::string::npos);
-#endif
-  }
 }
 
 TEST_F(Refusals, NothingOfWhatTheSpawnerReadsInTheSameFile) {
