@@ -62,10 +62,11 @@ def rough(view: View) -> Rival:
     """Masses that a maker has estimated: no mistake, and no other cause if they explain as much."""
     if view.arm.links is None:
         return view.rival("rough", own=(view.computed,), own_low=-_ROUGH, own_high=_ROUGH)
-    motion, still = view.motion, np.zeros_like(view.qd)
-    if view.arm.compared_without_gravity:  # those in the robot are inexact
-        motion = motion[0], still, still
-    parts = view.arm.links(*motion)[: len(view.names)]
+    parts = view.arm.links(*view.motion)[: len(view.names)]
+    if view.arm.compared_without_gravity:  # the robot has masses of its own, whose gravity it subtracts
+        still = np.zeros_like(view.qd)
+        gravity = view.arm.links(view.motion[0], still, still)[: len(view.names)]
+        parts = np.concatenate([parts - gravity, gravity])
     return view.rival("rough", columns=tuple(parts), low=-_ROUGH, high=_ROUGH)
 
 
