@@ -210,7 +210,14 @@ def _half_widths(fitter: ArmFitter, fit: ArmFit, read: Sequence[_Recording]) -> 
     deviations = [_jackknife(fitter, fit, samples, len(blocks))]
     for share in (1.0, _LOOSENED):
         known = Knowledge(
-            fitter.joint_names, values, fitter.prior, data, share * prior, scores, worth=1.0
+            fitter.joint_names,
+            values,
+            fitter.prior,
+            data,
+            share * prior,
+            scores,
+            worth=1.0,
+            assumed=np.zeros((len(data), 0)),
         )
         deviations.append(np.sqrt(np.diag(known.covariance)[at]))
     widths: Floats = student_t(len(scores)) * np.max(deviations, axis=0)

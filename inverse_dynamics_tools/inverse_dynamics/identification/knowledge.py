@@ -8,7 +8,7 @@ doi 10.3368/jhr.50.2.317].
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -73,7 +73,7 @@ class Knowledge:
     scores: Floats  # (clusters, m)
     worth: float  # how many independent samples one sample is worth, mean over the joints
     # (m, K) by how much the unknowns are wrong if an assumption is, by one standard deviation each
-    assumed: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    assumed: Floats
 
     @property
     def covariance(self) -> Floats:

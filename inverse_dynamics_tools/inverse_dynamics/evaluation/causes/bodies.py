@@ -63,7 +63,7 @@ def rough(view: View) -> Rival:
     if view.arm.links is None:
         return view.rival("rough", own=(view.computed,), own_low=-_ROUGH, own_high=_ROUGH)
     parts = view.arm.links(*view.motion)[: len(view.names)]
-    if view.arm.compared_without_gravity:  # the robot has masses of its own, whose gravity it subtracts
+    if view.arm.compared_without_gravity:  # the robot subtracts the gravity of masses of its own
         still = np.zeros_like(view.qd)
         gravity = view.arm.links(view.motion[0], still, still)[: len(view.names)]
         parts = np.concatenate([parts - gravity, gravity])
