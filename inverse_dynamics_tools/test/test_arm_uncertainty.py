@@ -14,6 +14,8 @@ from inverse_dynamics import Solver, write_joint_logs
 from inverse_dynamics._core import ArmUncertainty
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import InvalidParameterError, RobotError
+from inverse_dynamics.evaluation import bands
+from inverse_dynamics.identification.cross_validation import noise_in_motion
 from inverse_dynamics.identification.payload import estimate_payload
 from inverse_dynamics.identification.uncertainty import read_uncertainty
 from inverse_dynamics.results.identifications import write_identification
@@ -147,3 +149,22 @@ def test_payloads_are_estimated_with_the_deviations_that_a_model_has(model, tmp_
     without = estimate_payload(tmp_path / "loaded", tmp_path / "arm.yaml")
     assert len(without.estimate.arm) == 0
     assert [note for note in without.notes if "arm_model.json: there is none" in note]
+
+
+def test_joints_that_never_leave_the_step_of_friction_have_a_noise():
+    """One stands still, one has a step as wide as its velocities; only of the third samples at rest don't count."""
+    v = np.linspace(-1.0, 1.0, 201)
+    qd = np.column_stack([np.zeros_like(v), v, v])
+    errors = np.where(np.abs(qd) < 0.02, 5.0, 1.0)
+    widths = (0.1, 0.3, 0.005)
+    noise = noise_in_motion(errors, qd, [{"width": width} for width in widths])
+    np.testing.assert_allclose(noise * bands.NORMAL, [5.0, 1.0, 1.0])
+
+
+def test_the_band_of_a_recording_is_made_in_parts(model, monkeypatch):
+    solver = Solver(RIGID_BODY, model=str(model))
+    band, _ = bands.read_band(model, solver)
+    monkeypatch.setattr(bands, "_ROWS", 7)
+    np.testing.assert_array_equal(
+        band.of_recording(solver, *states()), band.half_widths(solver, *states())
+    )

@@ -14,6 +14,7 @@ h r       at rest friction is anything between -h and h, the height of its step;
 from __future__ import annotations
 
 from dataclasses import dataclass
+from tempfile import TemporaryFile
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,6 +42,7 @@ warms up falls by a third."""
 
 _REST = 0.02  # of the greatest velocity: friction has its law's value from about twice that on
 _REST_WIDTHS = 2.0  # the same in widths of the step
+_ROWS = 50_000  # samples in memory at a time
 
 
 @dataclass(frozen=True)
@@ -48,9 +50,8 @@ class TorqueBand:
     """The band of a model with n joints. n numbers each: N m (prismatic N), shares, rad/s (m/s)."""
 
     arm: ArmUncertainty
-    friction: Sequence[
-        Mapping[str, float]
-    ]  # smooth_coulomb of each joint, by the model file's keys
+    # smooth_coulomb of each joint, by the model file's keys
+    friction: Sequence[Mapping[str, float]]
     noise: Floats  # standard deviation while the joint moves
     level: Floats  # of offsets from day to day
     share: Floats  # of friction, from day to day
@@ -74,6 +75,15 @@ class TorqueBand:
         )
         at_rest = (fc + fl * gravity + fs) * rest_share(qd, self.friction, self.seen)
         return np.asarray(np.sqrt(NORMAL**2 * variance + (UNIFORM * at_rest) ** 2))
+
+    def of_recording(self, solver: Solver, q: Floats, qd: Floats, qdd: Floats) -> Floats:
+        """(N, n), as half_widths(), in a mapped file: a recording may be larger than the memory."""
+        with TemporaryFile() as file:
+            found = np.memmap(file, dtype=float, shape=q.shape)
+        for first in range(0, len(q), _ROWS):
+            rows = slice(first, first + _ROWS)
+            found[rows] = self.half_widths(solver, q[rows], qd[rows], qdd[rows])
+        return np.asarray(found)
 
 
 def rest_share(qd: Floats, friction: Sequence[Mapping[str, float]], seen: Floats) -> Floats:

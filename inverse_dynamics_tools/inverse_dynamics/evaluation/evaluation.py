@@ -93,8 +93,14 @@ class Evaluation(Views):
         """(n,) share of the valid samples within the 95 % band; None: the model has none."""
         if self.band is None:
             return None
-        within = np.abs(self.computed - self.measured) <= self.band
-        return np.asarray(within[self.samples.kept].mean(axis=0))
+        kept = self.samples.kept
+        within = [
+            np.count_nonzero(np.abs(computed - measured)[kept] <= band[kept])
+            for computed, measured, band in zip(
+                self.computed.T, self.measured.T, self.band.T, strict=True
+            )
+        ]
+        return np.array(within) / np.count_nonzero(kept)
 
     @property
     def notes_without_causes(self) -> tuple[str, ...]:
@@ -252,7 +258,7 @@ def evaluate(
     result = replace(
         result,
         notes=(*result.notes, *filter(None, [outside, other])),
-        band=None if band is None else band.half_widths(arm.solver, *states),
+        band=None if band is None else band.of_recording(arm.solver, *states),
     )
     if posture.moves:
         return result

@@ -20,7 +20,7 @@ from inverse_dynamics.identification.blocks import moving, together
 from inverse_dynamics.identification.result import LAWS, Choice
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from inverse_dynamics._core import ArmFit, ArmFitter
     from inverse_dynamics.base.arrays import Floats
@@ -111,16 +111,26 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
         )
     )
     qd = np.concatenate([part.fitted[1] for part in as_recorded])
-    moves = rest_share(qd, fit.friction, np.abs(qd).max(axis=0)) < _LITTLE
     return Chosen(
         law=best.law,
         prior_strength=best.prior_strength,
         delay=delay,
         fit=fit,
         band=np.quantile(errors, _BAND, axis=0),
-        noise=np.nanquantile(np.where(moves, errors, np.nan), _BAND, axis=0) / NORMAL,
+        noise=noise_in_motion(errors, qd, fit.friction),
         choices=choices,
     )
+
+
+def noise_in_motion(errors: Floats, qd: Floats, friction: Sequence[Mapping[str, float]]) -> Floats:
+    """(n,) standard deviation, from the quantile of absolute errors (M, n) of samples at which the joint moves.
+
+    Of all samples where none counts as moving: the joint stands still, or the step of its friction is as wide as
+    its velocities.
+    """
+    moves = rest_share(qd, friction, np.abs(qd).max(axis=0)) < _LITTLE
+    counted = np.where(moves | ~moves.any(axis=0), errors, np.nan)
+    return np.asarray(np.nanquantile(counted, _BAND, axis=0) / NORMAL)
 
 
 class _Parts:
