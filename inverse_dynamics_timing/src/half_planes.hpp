@@ -30,7 +30,8 @@ class HalfPlanes {
   void add(double p, double r, double t) {
     constexpr double kLeast = 1e-100;  // y unbounded, for all that x can be
     if (std::abs(p) < kLeast) p = kLeast;
-    (p > 0 ? upper_ : lower_).push_back({t / p, -r / p});
+    const double inverse = 1 / p;
+    (p > 0 ? upper_ : lower_).push_back({t * inverse, -r * inverse});
   }
 
   Range range(double x) const {

@@ -230,13 +230,11 @@ void Path::evaluate(double s, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> dq,
   const Index k = std::clamp<Index>(next - first - 1, 0, knots_.size() - 2);
   const double x = std::clamp(s, start(), end()) - knots_[k];
   const auto c = coefficients_.middleCols(kTerms * k, kTerms);
-  q = c.col(5);
-  dq = 5 * c.col(5);
-  ddq = 20 * c.col(5);
-  for (Index power = 4; power >= 0; --power) {
-    q = q * x + c.col(power);
-    if (power >= 1) dq = dq * x + static_cast<double>(power) * c.col(power);
-    if (power >= 2) ddq = ddq * x + static_cast<double>(power * (power - 1)) * c.col(power);
+  for (Index j = 0; j < c.rows(); ++j) {
+    const double c2 = c(j, 2), c3 = c(j, 3), c4 = c(j, 4), c5 = c(j, 5);
+    q[j] = ((((c5 * x + c4) * x + c3) * x + c2) * x + c(j, 1)) * x + c(j, 0);
+    dq[j] = (((5 * c5 * x + 4 * c4) * x + 3 * c3) * x + 2 * c2) * x + c(j, 1);
+    ddq[j] = ((20 * c5 * x + 12 * c4) * x + 6 * c3) * x + 2 * c2;
   }
 }
 

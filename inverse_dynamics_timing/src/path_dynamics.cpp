@@ -2,12 +2,12 @@
 #include "path_dynamics.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <inverse_dynamics_solver/kinematics.hpp>
 #include <inverse_dynamics_solver/torque_deviation.hpp>
 #include <string>
+#include <vector>
 
 namespace inverse_dynamics_timing {
 
@@ -126,11 +126,13 @@ void PathDynamics::room(Index k, double z, Room& room) const {
     solver_.getFrictionVector(q_.col(k), qd.col(i), f.col(i));
   }
   for (Index j = 0; j < n; ++j) {
-    const std::array<double, 2> limit{torqueLimit(j, qd(j, 0)), torqueLimit(j, qd(j, 1))};
-    room.up[j] = limit[0] - g_(j, k) - f(j, 0);
-    room.down[j] = limit[0] + g_(j, k) + f(j, 0);
-    room.up_slope[j] = step > 0 ? (limit[1] - limit[0] - (f(j, 1) - f(j, 0))) / step : 0.0;
-    room.down_slope[j] = step > 0 ? (limit[1] - limit[0] + (f(j, 1) - f(j, 0))) / step : 0.0;
+    const double limit = torqueLimit(j, qd(j, 0));
+    const double slope = step > 0 ? (torqueLimit(j, qd(j, 1)) - limit) / step : 0.0;
+    const double friction_slope = step > 0 ? (f(j, 1) - f(j, 0)) / step : 0.0;
+    room.up_slope[j] = slope - friction_slope;
+    room.down_slope[j] = slope + friction_slope;
+    room.up[j] = limit - g_(j, k) - f(j, 0) - room.up_slope[j] * z;
+    room.down[j] = limit + g_(j, k) + f(j, 0) - room.down_slope[j] * z;
   }
   if (rows() > n) {
     room.up.tail(n) = room.down.tail(n) = limits_.acceleration;
@@ -143,29 +145,39 @@ bool PathDynamics::turnsBack(Index k) const {
   return (here.abs().min(next.abs()) < (next - here).abs()).any();
 }
 
-double PathDynamics::excess(Index k, double x, double y) const {
-  if (!turnsBack(k)) return excessAt(k, x, y, 0.5);
-  double most = 0.0;
-  for (const double share : {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875}) {
-    most = std::max(most, excessAt(k, x, y, share));
+VectorXd PathDynamics::excess(const Eigen::Ref<const VectorXd>& z) const {
+  struct Place {
+    Index k;
+    double share;
+  };
+  std::vector<Place> places;
+  for (Index k = 0; k + 1 < points(); ++k) {
+    const int parts = turnsBack(k) ? 8 : 2;
+    for (int part = 1; part < parts; ++part) places.push_back({k, double(part) / parts});
   }
-  return most;
-}
-
-double PathDynamics::excessAt(Index k, double x, double y, double share) const {
-  const Index n = g_.rows();
-  const double length = s_[k + 1] - s_[k], z = x + share * (y - x), u = (y - x) / (2 * length);
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 64, 1> q(n), qd(n), qdd(n), tau(n);
-  path_.evaluate(s_[k] + share * length, q, qd, qdd);
-  qdd = u * qd + z * qdd;
-  qd *= std::sqrt(z);
-  solver_.getTorques(q, qd, qdd, tau);
-  double most = 0.0;
-  if (limits_.velocity.size() > 0) {
-    most = (qd.array().abs() / limits_.velocity.array()).maxCoeff() - 1.0;
+  const Index n = g_.rows(), count = static_cast<Index>(places.size());
+  MatrixXd q(n, count), qd(n, count), qdd(n, count), tau(n, count);
+  for (Index i = 0; i < count; ++i) {
+    const auto [k, share] = places[static_cast<std::size_t>(i)];
+    const double length = s_[k + 1] - s_[k], here = z[k] + share * (z[k + 1] - z[k]);
+    path_.evaluate(s_[k] + share * length, q.col(i), qd.col(i), qdd.col(i));
+    qdd.col(i) = (z[k + 1] - z[k]) / (2 * length) * qd.col(i) + here * qdd.col(i);
+    qd.col(i) *= std::sqrt(here);
   }
-  for (Index j = 0; j < n; ++j) {
-    most = std::max(most, (std::abs(tau[j]) - torqueLimit(j, qd[j])) / limits_.torque[j]);
+  solver_.getTorquesBatch(q, qd, qdd, tau);
+  VectorXd most = VectorXd::Zero(points() - 1);
+  for (Index i = 0; i < count; ++i) {
+    double& worst = most[places[static_cast<std::size_t>(i)].k];
+    const auto look = [&worst](const auto& values, const chain_dynamics::OwnedVector& limit) {
+      if (limit.size() == 0) return;
+      worst = std::max(worst, (values.array().abs() / limit.array()).maxCoeff() - 1.0);
+    };
+    look(qd.col(i), limits_.velocity);
+    look(qdd.col(i), limits_.acceleration);
+    for (Index j = 0; j < n; ++j) {
+      const double limit = torqueLimit(j, qd(j, i));
+      worst = std::max(worst, (std::abs(tau(j, i)) - limit) / limits_.torque[j]);
+    }
   }
   return most;
 }

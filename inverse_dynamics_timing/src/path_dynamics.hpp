@@ -13,11 +13,11 @@ namespace inverse_dynamics_timing {
 
 using inverse_dynamics_solver::InverseDynamicsSolver;
 
-/// How much is left below the limits of each row at a squared speed z, and how that changes with z:
-/// `a u + b z <= up`, `-(a u + b z) <= down`.
+/// Limits of each row about a squared speed: `a u + b z <= up + up_slope z`, `-(a u + b z) <= down +
+/// down_slope z`.
 struct Room {
   Eigen::Index k = -1;  // at this point of the grid
-  double z = 0.0;
+  double z = 0.0;       // where friction is that of the solver
   Eigen::VectorXd up, down, up_slope, down_slope;
 };
 
@@ -40,10 +40,9 @@ class PathDynamics {
   void room(Eigen::Index k, double z, Room& room) const;
   Room emptyRoom() const;
 
-  /// How far a torque or a velocity is above its limit within interval k, as a share of the limit, with
-  /// squared speeds x and y at its ends: in its middle, or where a joint turns back, and friction steps,
-  /// at seven places.
-  double excess(Eigen::Index k, double x, double y) const;
+  /// How far a limit is passed within each interval, as a share of it, with squared speeds z at the
+  /// points: in its middle, or where a joint turns back, and friction steps, at seven places.
+  Eigen::VectorXd excess(const Eigen::Ref<const Eigen::VectorXd>& z) const;
 
   /// The joint that lacks most torque to stand still at point k, and how much; -1: none lacks any.
   Eigen::Index weakest(Eigen::Index k, double& missing) const;
@@ -51,9 +50,6 @@ class PathDynamics {
  private:
   /// Whether a joint does in interval k or right beside it.
   bool turnsBack(Eigen::Index k) const;
-  /// At this share of the interval.
-  double excessAt(Eigen::Index k, double x, double y, double share) const;
-
   double torqueLimit(Eigen::Index j, double velocity) const;
 
   const InverseDynamicsSolver& solver_;

@@ -39,9 +39,15 @@ void PhasePlane::look(Index k, double z, Room& room) const {
   if (room.k != k || !same(room.z, z)) dynamics_.room(k, z, room);
 }
 
+/// Limits `p y + r x <= room` of row j, and of its other direction, the room being that of x or of y.
+void PhasePlane::addLimits(Index j, double p, double r, const Room& room, double of_x,
+                           double of_y) {
+  planes_.add(p - of_y * room.up_slope[j], r - of_x * room.up_slope[j], room.up[j]);
+  planes_.add(-p - of_y * room.down_slope[j], -r - of_x * room.down_slope[j], room.down[j]);
+}
+
 /// What limits demand of the squared speeds x and y at the ends of interval k, where `u = m (y - x)`,
-/// `m = 1 / (2 ds)`: at its start `a u + b x <= up + up_slope (x - x0)`, x0 the speed of here_; at its
-/// end the same of y and next_.
+/// `m = 1 / (2 ds)`.
 void PhasePlane::addInterval(Index k) {
   const double m = 0.5 / (dynamics_.s(k + 1) - dynamics_.s(k));
   planes_.clear();
@@ -50,13 +56,8 @@ void PhasePlane::addInterval(Index k) {
   const auto a = dynamics_.a(k), b = dynamics_.b(k), next_a = dynamics_.a(k + 1),
              next_b = dynamics_.b(k + 1);
   for (Index j = 0; j < dynamics_.rows(); ++j) {
-    const double p = a[j] * m, r = b[j] - p;
-    planes_.add(p, r - here_.up_slope[j], here_.up[j] - here_.up_slope[j] * here_.z);
-    planes_.add(-p, -r - here_.down_slope[j], here_.down[j] - here_.down_slope[j] * here_.z);
-    const double next_r = -next_a[j] * m, next_p = next_b[j] - next_r;
-    planes_.add(next_p - next_.up_slope[j], next_r, next_.up[j] - next_.up_slope[j] * next_.z);
-    planes_.add(-next_p - next_.down_slope[j], -next_r,
-                next_.down[j] - next_.down_slope[j] * next_.z);
+    addLimits(j, a[j] * m, b[j] - a[j] * m, here_, 1.0, 0.0);
+    addLimits(j, next_b[j] + next_a[j] * m, -next_a[j] * m, next_, 0.0, 1.0);
   }
 }
 
@@ -155,11 +156,8 @@ double PhasePlane::greatest(Index k) {
   for (int program = 0; program < kPrograms; ++program) {
     look(k, x, here_);
     planes_.clear();
-    const auto a = dynamics_.a(k), b = dynamics_.b(k);
     for (Index j = 0; j < dynamics_.rows(); ++j) {
-      planes_.add(a[j], b[j] - here_.up_slope[j], here_.up[j] - here_.up_slope[j] * here_.z);
-      planes_.add(-a[j], -b[j] - here_.down_slope[j],
-                  here_.down[j] - here_.down_slope[j] * here_.z);
+      addLimits(j, dynamics_.a(k)[j], dynamics_.b(k)[j], here_, 1.0, 0.0);  // y: the acceleration
     }
     double to = z;
     if (!planes_.approach(to, 0.0)) return -1.0;

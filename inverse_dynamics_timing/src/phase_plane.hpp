@@ -28,6 +28,7 @@ class PhasePlane {
   enum class End { kGreatest, kLeast };
 
   void look(Eigen::Index k, double z, Room& room) const;
+  void addLimits(Eigen::Index j, double p, double r, const Room& room, double of_x, double of_y);
   void addInterval(Eigen::Index k);
   bool backward(Eigen::Index k, End end, double& x);
   double forward(Eigen::Index k);

@@ -61,10 +61,10 @@ constexpr Index kParts = 4;
 /// move along the path, changes within them, as a joint turns back. Empty: none are.
 VectorXd refined(const PathDynamics& dynamics, const VectorXd& z) {
   std::vector<double> s{dynamics.s(0)};
+  const VectorXd excess = dynamics.excess(z);
   for (Index k = 0; k + 1 < dynamics.points(); ++k) {
     const double from = dynamics.s(k), to = dynamics.s(k + 1);
-    const bool coarse = dynamics.excess(k, z[k], z[k + 1]) > kAllowed;
-    for (Index i = 1; coarse && i < kParts; ++i) {
+    for (Index i = 1; i < kParts && excess[k] > kAllowed; ++i) {
       s.push_back(from + (to - from) * static_cast<double>(i) / kParts);
     }
     s.push_back(to);
@@ -73,25 +73,18 @@ VectorXd refined(const PathDynamics& dynamics, const VectorXd& z) {
   return Eigen::Map<const VectorXd>(s.data(), static_cast<Index>(s.size()));
 }
 
-/// Where along a motion a torque is furthest above its limit, and by which share of it.
+/// Where along a motion a limit is passed furthest, and by which share of it.
 double overload(const InverseDynamicsSolver& solver, const Trajectory& motion,
                 const MotionLimits& limits, double margin, double& s) {
   double worst = 0.0;
-  const VectorXd grid = motion.s();
-  Index first = 0;
+  const VectorXd grid = motion.s(), z = motion.speed().array().square();
+  Index first = 0, at = 0;
   for (Index k = 1; k <= grid.size(); ++k) {
     if (k < grid.size() && grid[k] > grid[k - 1]) continue;
     const PathDynamics dynamics(solver, motion.path(), grid.segment(first, k - first), limits,
                                 margin);
-    Room room = dynamics.emptyRoom();
-    for (Index i = 0; i + 1 < dynamics.points(); ++i) {
-      const double v = motion.speed()[first + i], w = motion.speed()[first + i + 1];
-      const double u = (w * w - v * v) / (2 * (dynamics.s(i + 1) - dynamics.s(i)));
-      dynamics.room(i, v * v, room);
-      const VectorXd used = dynamics.a(i) * u + dynamics.b(i) * v * v;
-      const double over = std::max((used - room.up).maxCoeff(), (-used - room.down).maxCoeff());
-      if (over > worst) worst = over, s = dynamics.s(i);
-    }
+    const double over = dynamics.excess(z.segment(first, k - first)).maxCoeff(&at);
+    if (over > worst) worst = over, s = dynamics.s(at);
     first = k;
   }
   return worst;
@@ -102,11 +95,10 @@ Retimed withoutJerk(const InverseDynamicsSolver& solver, const Trajectory& motio
                     const MotionLimits& limits, double margin) {
   constexpr double kSlower = 1.01, kSlowest = 4.0;
   const Trajectory smooth = smoothJerk(motion, limits.jerk);
-  const double allowed = 1e-3 * limits.torque.minCoeff();
   double s = 0.0;
   for (double factor = 1.0; factor < kSlowest; factor *= kSlower) {
     Trajectory slower = slowed(smooth, factor);
-    if (overload(solver, slower, limits, margin, s) <= allowed) return {std::move(slower), {}};
+    if (overload(solver, slower, limits, margin, s) <= kAllowed) return {std::move(slower), {}};
   }
   return {{}, {Refusal::Reason::kNoWayOn, s, -1, 0.0}};
 }
