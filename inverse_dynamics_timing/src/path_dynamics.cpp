@@ -104,7 +104,7 @@ double PathDynamics::torqueLimit(Index j, double velocity) const {
   const double limit = limits_.torque[j] - band_[j];
   if (limits_.knee_velocity.size() == 0) return limit;
   const double knee = limits_.knee_velocity[j], none = limits_.no_load_velocity[j];
-  const double share = std::clamp((none - std::abs(velocity)) / (none - knee), 0.0, 1.0);
+  const double share = std::min((none - std::abs(velocity)) / (none - knee), 1.0);
   return limits_.torque[j] * share - band_[j];
 }
 
@@ -232,27 +232,29 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
   checkLimit(solver, "no_load_velocity", limits.no_load_velocity);
   const bool kinematics = dynamic_cast<const ids::Kinematics*>(&solver) != nullptr;
   const auto speed = [](double value) { return value >= 0.0 && std::isfinite(value); };
+  const auto text = [](double value) { return std::to_string(value); };
   const struct {
     bool right;
     const char *where, *expected;
-    double got;
+    std::string got;
   } rules[] = {
-      {n <= 64, "solver", "at most 64 joints", static_cast<double>(n)},
-      {limits.torque.size() == n, "limits.torque", "a limit of each joint, N m", 0.0},
+      {n <= 64, "solver", "at most 64 joints", std::to_string(n)},
+      {limits.torque.size() == n, "limits.torque", "a limit of each joint, N m", "none"},
       {limits.knee_velocity.size() == limits.no_load_velocity.size() &&
            (limits.knee_velocity.array() < limits.no_load_velocity.array()).all(),
-       "limits.knee_velocity", "for each joint less than no_load_velocity, or neither", NAN},
-      {limits.tip_speed > 0.0, "limits.tip_speed", "> 0 m/s", limits.tip_speed},
+       "limits.knee_velocity", "for each joint less than no_load_velocity, or neither", "others"},
+      {limits.tip_speed > 0.0, "limits.tip_speed", "> 0 m/s", text(limits.tip_speed)},
       {std::isinf(limits.tip_speed) || kinematics, "limits.tip_speed",
-       "none, or a solver with the capability Kinematics", limits.tip_speed},
-      {options.points >= 2, "options.points", ">= 2", static_cast<double>(options.points)},
-      {speed(options.start_speed), "options.start_speed", "finite, >= 0", options.start_speed},
-      {speed(options.end_speed), "options.end_speed", "finite, >= 0", options.end_speed},
+       "none, or a solver with the capability Kinematics", text(limits.tip_speed)},
+      {options.points >= 2, "options.points", ">= 2", std::to_string(options.points)},
+      {speed(options.start_speed), "options.start_speed", "finite, >= 0",
+       text(options.start_speed)},
+      {speed(options.end_speed), "options.end_speed", "finite, >= 0", text(options.end_speed)},
       {limits.jerk.size() == 0 || options.start_speed + options.end_speed == 0.0, "limits.jerk",
-       "none, or start and end at rest", options.start_speed + options.end_speed},
+       "none, or start and end at rest", text(options.start_speed + options.end_speed)},
   };
   for (const auto& rule : rules) {
-    if (!rule.right) refuseOption(rule.where, rule.expected, std::to_string(rule.got));
+    if (!rule.right) refuseOption(rule.where, rule.expected, rule.got);
   }
   const chain_dynamics::OwnedVector band = torqueBand(solver, options.margin);
   for (Index j = 0; j < n; ++j) {

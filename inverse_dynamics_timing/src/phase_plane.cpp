@@ -17,8 +17,11 @@ constexpr int kDampedFrom = 10;
 // Relative change of z that ends them. Newton's method leaves about its square.
 constexpr double kSame = 1e-4;
 
-// Beyond every speed that limits of torque allow.
-constexpr double kFastest = 1e12;
+// Beyond every speed that limits of torque allow, and next to standing still.
+constexpr double kFastest = 1e12, kSlowest = 1e-12;
+// Friction and the torque of motors bend: where lines that touch them leave no room, those that touch
+// them at a slower speed may.
+constexpr double kSlower = 0.1;
 
 bool same(double z, double other) { return std::abs(z - other) <= kSame * std::max(z, other); }
 
@@ -77,7 +80,11 @@ bool PhasePlane::backward(Index k, End end, double& x) {
     look(k + 1, y, next_);
     addInterval(k);
     double to = greatest ? cap : 0.0;
-    if (!planes_.approach(to, greatest ? 0.0 : cap)) return false;
+    if (!planes_.approach(to, greatest ? 0.0 : cap)) {
+      if (!greatest || x < kSlowest) return false;
+      x *= kSlower, y *= kSlower;
+      continue;
+    }
     const HalfPlanes::Range range = planes_.range(to);
     const double y_to = std::max(greatest ? range.high : range.low, 0.0);
     const bool done = same(to, here_.z) && same(y_to, next_.z);
@@ -160,7 +167,11 @@ double PhasePlane::greatest(Index k) {
       addLimits(j, dynamics_.a(k)[j], dynamics_.b(k)[j], here_, 1.0, 0.0);  // y: the acceleration
     }
     double to = z;
-    if (!planes_.approach(to, 0.0)) return -1.0;
+    if (!planes_.approach(to, 0.0)) {
+      if (x < kSlowest) return -1.0;
+      x *= kSlower;
+      continue;
+    }
     const bool done = same(to, here_.z);
     x = program < kDampedFrom ? to : (x + to) / 2;
     if (done) break;

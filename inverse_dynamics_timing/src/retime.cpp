@@ -54,7 +54,7 @@ std::vector<Index> borders(const Path& path) {
 }
 
 constexpr double kAllowed = 1e-3;  // above a limit between points, share of it
-constexpr int kRefinements = 5;
+constexpr int kRefinements = 10;
 constexpr Index kParts = 4;
 
 /// The grid with intervals split in whose middle limits are passed: friction, or how fast a joint may

@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from conftest import JOINTS
+from scipy.interpolate import CubicSpline
 from test_report import browser, complaints, wait_until
 
 from inverse_dynamics import Solver, cli, load_robot, retime, trajectory_torques
@@ -13,7 +14,7 @@ from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retim
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
-from inverse_dynamics.evaluation.retiming import description_limits, sample_times
+from inverse_dynamics.evaluation.retiming import description_limits, sample_times, torque_limit
 from inverse_dynamics.report.retimed import spans, write_retimed_page
 from inverse_dynamics.robot.robots import with_changes
 
@@ -126,29 +127,46 @@ def test_friction_that_helps_to_brake_is_used(fastest):
     assert fastest.energy.friction > 0.5 * fastest.energy.driven
 
 
-@pytest.mark.parametrize("robot", LIMITS)
-def test_as_fast_as_toppra(robot):
+def toppra_duration(robot, waypoints, knots, velocity, torque):
     toppra = pytest.importorskip("toppra")
-    constraint = toppra.constraint
-    torque = np.array(LIMITS[robot])
+    limits = [
+        toppra.constraint.JointVelocityConstraint(np.c_[-velocity, velocity]),
+        toppra.constraint.JointTorqueConstraint(
+            robot.solver().torques, np.c_[-torque, torque], np.zeros_like(torque)
+        ),
+    ]
+    path = toppra.SplineInterpolator(knots, waypoints, bc_type="natural")
+    grid = np.linspace(0.0, knots[-1], 1001)
+    return toppra.algorithm.TOPPRA(limits, path, gridpoints=grid).compute_trajectory(0, 0).duration
+
+
+def drake_duration(robot, waypoints, knots, velocity, torque):
+    drake = pytest.importorskip("pydrake.all")
+    plant = drake.MultibodyPlant(0.0)
+    drake.Parser(plant).AddModels(str(robot.urdf))
+    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(robot.root))
+    plant.Finalize()
+    spline = CubicSpline(knots, waypoints, bc_type="natural")
+    path = drake.PiecewisePolynomial.CubicHermite(knots, waypoints.T, spline(knots, 1).T)
+    timing = drake.Toppra(path, plant, np.linspace(0.0, knots[-1], 1001))
+    timing.AddJointVelocityLimit(-velocity, velocity)
+    timing.AddJointTorqueLimit(-torque, torque)
+    return timing.SolvePathParameterization().end_time()
+
+
+@pytest.mark.parametrize("planner", [toppra_duration, drake_duration])
+@pytest.mark.parametrize("name", LIMITS)
+def test_as_fast_as_other_planners(name, planner):
+    torque = np.array(LIMITS[name])
     velocity = np.full(len(torque), 10.0)
-    solver = load_robot(robot).solver()
-    random = np.random.default_rng(1)
+    robot, random = load_robot(name), np.random.default_rng(1)
     for k in range(PATHS):
         waypoints = random.uniform(-1.5, 1.5, (5, len(torque)))[:: 1 if k % 2 else -1]
         path = JointPath.spline(waypoints)
-        ours = retime_path(solver, path, MotionLimits(torque=torque, velocity=velocity))
-        theirs = toppra.algorithm.TOPPRA(
-            [
-                constraint.JointVelocityConstraint(np.c_[-velocity, velocity]),
-                constraint.JointTorqueConstraint(
-                    solver.torques, np.c_[-torque, torque], np.zeros_like(torque)
-                ),
-            ],
-            toppra.SplineInterpolator(path.knots, waypoints, bc_type="natural"),
-            gridpoints=np.linspace(0.0, path.knots[-1], 1001),
-        ).compute_trajectory(0, 0)
-        assert ours.duration == pytest.approx(theirs.duration, rel=SHORTER)
+        limits = MotionLimits(torque=torque, velocity=velocity)
+        ours = retime_path(robot.solver(), path, limits).duration
+        theirs = planner(robot, waypoints, path.knots, velocity, torque)
+        assert ours == pytest.approx(theirs, rel=SHORTER)
 
 
 def test_every_path_is_timed_on_which_the_robot_can_stand():
@@ -175,6 +193,54 @@ def test_limits_hold_between_points_of_the_grid(arm, velocity):
         q, qd, qdd = timed.states(between.ravel())
         assert (np.abs(qd) / velocity).max() < 1.0 + SHORTER
         assert (np.abs(solver.torques(q, qd, qdd)) / torque).max() < 1.0 + SHORTER
+
+
+def test_torque_that_falls_with_speed_is_the_limit_kept_and_shown():
+    """Also where the motors' greatest speed leaves them no torque to hold the arm."""
+    random, torque = np.random.default_rng(3), np.array(LIMITS["ur10_simulated"])
+    solver = load_robot("ur10_real").solver()
+    for k in range(20):
+        waypoints = random.uniform(-1.2, 1.2, (random.integers(2, 6), 6))
+        knee = random.uniform(0.05, 1.0)
+        limits = MotionLimits(
+            torque=torque,
+            knee_velocity=np.full(6, knee),
+            no_load_velocity=np.full(6, knee + random.uniform(0.2, 2.0)),
+        )
+        path = JointPath.spline(waypoints) if k % 2 else JointPath.lines(waypoints, 0.05)
+        timed = retime_path(solver, path, limits)
+        q, qd, qdd = timed.states(sample_times(timed.duration, 1000.0))
+        over = np.abs(solver.torques(q, qd, qdd)) - torque_limit(limits, qd)
+        assert (over < SHORTER * torque).all()
+
+    shown = retime(path, "ur10_real", limits)
+    assert shown.torque_limit.min() < 0.8 * torque.min()
+    assert 0.99 < np.abs(shown.use).max() < 1.01
+    other = shown.by_acceleration
+    states = other.states(sample_times(other.duration, 250.0))
+    assert (np.abs(solver.torques(*states)) < 1.02 * torque_limit(limits, states[1])).all()
+
+
+def test_command_line_takes_speeds_at_the_ends_and_curves_of_motors(tmp_path):
+    waypoints, out = write_waypoints(tmp_path, ".csv"), tmp_path / "out"
+    given = [
+        "--deviation",
+        "0.05",
+        "--start-speed",
+        "0.2",
+        "--end-speed",
+        "0.1",
+        "--figures",
+        "none",
+    ]
+    given += ["--knee-velocity", "0.5", "--no-load-velocity", "2"]
+    assert (
+        cli.main(["retime", str(waypoints), "--robot", "ur10_real", "--out", str(out), *given]) == 0
+    )
+    table = np.genfromtxt(out / "trajectory.csv", delimiter=",", names=True)
+    velocity = np.stack([table[f"velocity{joint}"] for joint in JOINTS])
+    assert np.linalg.norm(velocity[:, [0, -1]], axis=0) == pytest.approx([0.2, 0.1], rel=1e-2)
+    assert 0.5 < np.abs(velocity).max() < 2.0
 
 
 def test_a_joint_without_a_velocity_limit_leaves_the_others_theirs(tmp_path):

@@ -46,11 +46,12 @@ if TYPE_CHECKING:
 
 _UNLIMITED = 1e6  # N m, rad/s: beyond every joint
 _OF_MOTORS = ("knee_velocity", "no_load_velocity")
-_PER_JOINT = ("torque", "velocity", "acceleration", "jerk", *_OF_MOTORS)
+PER_JOINT = ("torque", "velocity", "acceleration", "jerk", *_OF_MOTORS)
 _WEIGHING_RATE = 250.0  # Hz, of samples for energies
 _SLOWEST = 0.05  # share of the fastest motion's velocities
 _SECTIONS = 9  # of the search: the share is known to 3 %, the sum to far less
 _STILL = 1e-6  # rad/s
+_LEAST = 1e-9  # N m, of a limit
 _PLACES = 1001  # of a path, at which positions are checked
 _ROUNDING = 1e-6  # rad
 _AT_LIMIT = 0.99  # of a limit: the joint is said to be at it
@@ -90,8 +91,13 @@ class Retimed:
     @property
     def use(self) -> Floats:
         """(N, n) torque over what it may be, signed."""
-        used: Floats = self.efforts / (self.limits.torque - self.band)
+        used: Floats = self.efforts / np.maximum(self.torque_limit - self.band, _LEAST)
         return used
+
+    @property
+    def torque_limit(self) -> Floats:
+        """(N, n) N m; less at speed where the motors' torque falls."""
+        return torque_limit(self.limits, self.qd)
 
     @property
     def at_limit(self) -> Floats:
@@ -201,6 +207,15 @@ def retime(
     )
 
 
+def torque_limit(limits: MotionLimits, qd: Floats) -> Floats:
+    """(N, n) N m, of joints at velocities (N, n)."""
+    knee, none = limits.knee_velocity, limits.no_load_velocity
+    share = (
+        np.clip((none - np.abs(qd)) / (none - knee), 0.0, 1.0) if len(knee) else np.ones_like(qd)
+    )
+    return limits.torque * share
+
+
 def sample_times(duration: float, rate: float) -> Floats:
     """0 to the duration, both included, `rate` per second and the last interval shorter."""
     return np.append(np.arange(0.0, duration, 1.0 / rate), duration)
@@ -304,7 +319,7 @@ def unwrapped(waypoints: Floats, solver: Solver) -> Floats:
 
 def _changed(limits: MotionLimits, **changes: Floats) -> MotionLimits:
     """A copy with other limits."""
-    names = (*_PER_JOINT, "tip_speed")
+    names = (*PER_JOINT, "tip_speed")
     return MotionLimits(**{**{name: getattr(limits, name) for name in names}, **changes})
 
 
@@ -372,8 +387,9 @@ def _by_acceleration(
             timed = retime_path(solver, path, common, grid)
         except UserError:  # a speed at an end is too high
             return None
-        torques = solver.torques(*timed.states(sample_times(timed.duration, 500.0)))
-        return timed if (np.abs(torques) <= limits.torque - band).all() else None
+        states = timed.states(sample_times(timed.duration, 500.0))
+        held = np.abs(solver.torques(*states)) <= torque_limit(limits, states[1]) - band
+        return timed if held.all() else None
 
     low, high = 1e-2, 1e3
     found = motion(low)

@@ -136,7 +136,13 @@ def _draw_torque(axis: Axes, result: Retimed, j: int) -> None:
         )
     axis.plot(result.time, torque, color=palette.COMPUTED, linewidth=1.0)
     for sign in (-1, 1):
-        axis.axhline(sign * limit, color="black", linestyle=(0, (3.0, 1.6)), linewidth=0.8)
+        axis.plot(
+            result.time,
+            sign * result.torque_limit[:, j],
+            color="black",
+            linestyle=(0, (3.0, 1.6)),
+            linewidth=0.8,
+        )
     axis.set_xlim(result.time[0], result.time[-1])
     axis.set_ylim(-1.15 * limit, 1.15 * limit)
     axis.set_title(

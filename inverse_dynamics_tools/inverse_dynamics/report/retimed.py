@@ -111,9 +111,9 @@ def _speed_plot(result: Retimed) -> dict[str, Any]:
 def _torque_plot(
     result: Retimed, j: int, motions: list[tuple[tuple[str, str], Floats, Floats, Floats]]
 ) -> dict[str, Any]:
-    ends = np.array([0.0, max(time[-1] for _, time, _, _ in motions)])
-    limit = result.limits.torque[j]
-    series = [_series("limit", "measured", ends, np.full(2, sign * limit)) for sign in (1, -1)]
+    ends = np.append(result.time, max(time[-1] for _, time, _, _ in motions))
+    limit = np.append(result.torque_limit[:, j], result.torque_limit[-1, j])
+    series = [_series("limit", "measured", ends, sign * limit) for sign in (1, -1)]
     for (name, style), time, _, torques in reversed(motions):
         series.append(_series(name, style, time, torques[:, j]))
     half = float(result.band[j])

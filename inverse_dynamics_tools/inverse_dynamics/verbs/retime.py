@@ -49,11 +49,19 @@ def declare(options: Options) -> None:
         _distance,
     )
     way.add("--stops K,K,...", "waypoints to stand still at, from 0", whole_numbers, default=())
+    way.add(
+        "--start-speed RAD/S",
+        "ds/dt at its start, s: way from waypoint to waypoint",
+        positive_number,
+    )
+    way.add("--end-speed RAD/S", "and at its end", positive_number)
     limits = options.group("limits, one for all joints or one for each")
     limits.add("--torque A,B,...", "N m (default: of the robot description)", numbers)
     limits.add("--velocity A,B,...", "rad/s (default: of the robot description)", numbers)
     limits.add("--acceleration A,B,...", "rad/s^2", numbers)
     limits.add("--jerk A,B,...", "rad/s^3, by a pass after the optimisation", numbers)
+    limits.add("--knee-velocity A,B,...", "rad/s, above it torque limits fall in a line", numbers)
+    limits.add("--no-load-velocity A,B,...", "rad/s, there they are zero", numbers)
     limits.add("--tip-speed M/S", "speed of the tip, m/s", positive_number)
     limits.add("--margin SHARE", "of measured torques that stay within limits: 0.95", share)
     options.add(
@@ -80,13 +88,12 @@ def run(arguments: argparse.Namespace) -> None:
 
     from inverse_dynamics._core import RetimeOptions
     from inverse_dynamics.evaluation.evaluation import Arm
-    from inverse_dynamics.evaluation.retiming import description_limits, retime
+    from inverse_dynamics.evaluation.retiming import PER_JOINT, description_limits, retime
     from inverse_dynamics.results.retimed import PAGE, summary, write_retimed
     from inverse_dynamics.verbs.screen import show, title
     from inverse_dynamics.verbs.tables import retime_table
 
-    names = ("torque", "velocity", "acceleration", "jerk")
-    given = {name: getattr(arguments, name) for name in names if getattr(arguments, name)}
+    given = {name: getattr(arguments, name) for name in PER_JOINT if getattr(arguments, name)}
     limits = description_limits(Arm(robot), robot, **given)
     if arguments.tip_speed:
         limits.tip_speed = arguments.tip_speed
@@ -98,7 +105,11 @@ def run(arguments: argparse.Namespace) -> None:
         deviation=arguments.deviation,
         stops=arguments.stops,
         weight=arguments.weight or 0.0,
-        options=RetimeOptions(margin=arguments.margin or 0.0),
+        options=RetimeOptions(
+            margin=arguments.margin or 0.0,
+            start_speed=arguments.start_speed or 0.0,
+            end_speed=arguments.end_speed or 0.0,
+        ),
     )
     write_retimed(
         result,
