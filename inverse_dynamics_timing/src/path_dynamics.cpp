@@ -140,9 +140,11 @@ void PathDynamics::room(Index k, double z, Room& room) const {
   }
 }
 
-bool PathDynamics::turnsBack(Index k) const {
+int PathDynamics::parts(Index k) const {
   const auto here = dq_.col(k).array(), next = dq_.col(k + 1).array();
-  return (here.abs().min(next.abs()) < (next - here).abs()).any();
+  if ((here.abs().min(next.abs()) < (next - here).abs()).any()) return 8;
+  constexpr double kBend = 0.03;  // of q', relative
+  return (next - here).square().sum() < kBend * kBend * here.square().sum() ? 2 : 4;
 }
 
 VectorXd PathDynamics::excess(const Eigen::Ref<const VectorXd>& z) const {
@@ -152,8 +154,8 @@ VectorXd PathDynamics::excess(const Eigen::Ref<const VectorXd>& z) const {
   };
   std::vector<Place> places;
   for (Index k = 0; k + 1 < points(); ++k) {
-    const int parts = turnsBack(k) ? 8 : 2;
-    for (int part = 1; part < parts; ++part) places.push_back({k, double(part) / parts});
+    const int count = parts(k);
+    for (int part = 1; part < count; ++part) places.push_back({k, double(part) / count});
   }
   const Index n = g_.rows(), count = static_cast<Index>(places.size());
   MatrixXd q(n, count), qd(n, count), qdd(n, count), tau(n, count);

@@ -41,15 +41,16 @@ class PathDynamics {
   Room emptyRoom() const;
 
   /// How far a limit is passed within each interval, as a share of it, with squared speeds z at the
-  /// points: in its middle, or where a joint turns back, and friction steps, at seven places.
+  /// points: in its middle; at three places where the path bends; at seven where a joint turns back,
+  /// and friction steps.
   Eigen::VectorXd excess(const Eigen::Ref<const Eigen::VectorXd>& z) const;
 
   /// The joint that lacks most torque to stand still at point k, and how much; -1: none lacks any.
   Eigen::Index weakest(Eigen::Index k, double& missing) const;
 
  private:
-  /// Whether a joint does in interval k or right beside it.
-  bool turnsBack(Eigen::Index k) const;
+  /// Into how many parts excess() divides interval k.
+  int parts(Eigen::Index k) const;
   double torqueLimit(Eigen::Index j, double velocity) const;
 
   const InverseDynamicsSolver& solver_;
