@@ -248,8 +248,19 @@ SolverParameters readSolverParameters(const LocatedMap& map) {
   return found;
 }
 
+RunConfiguration robotOfDescription(const std::string& urdf) {
+  RunConfiguration robot;
+  const std::string name = fs::path(urdf).filename();
+  robot.name = name.substr(0, name.find('.'));
+  robot.plugin = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody";
+  robot.file = robot.urdf = urdf;
+  robot.effort = kAutomatic;
+  return robot;
+}
+
 RunConfiguration readRunConfiguration(const std::string& name_or_file) {
   const fs::path path(name_or_file);
+  if (path.extension() == ".urdf") return robotOfDescription(name_or_file);
   const bool is_file =
       path.extension() == ".yaml" || path.extension() == ".yml" || path.filename() != path;
   if (is_file) {

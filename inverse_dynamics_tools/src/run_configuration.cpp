@@ -140,7 +140,8 @@ True)");
 Parameters
 ----------
 name_or_file : str or path
-    One of robot_names(); what ends in .yaml or .yml, or has a directory, is a file.
+    One of robot_names(); what ends in .yaml or .yml, or has a directory, is a file. One that ends
+    in .urdf: robot_of_description().
 
 Raises
 ------
@@ -152,6 +153,12 @@ Examples
 >>> from inverse_dynamics import load_robot
 >>> load_robot("ur10_real").joints[:2]
 ('shoulder_pan_joint', 'shoulder_lift_joint'))");
+  module.def(
+      "robot_of_description",
+      [](const PathText& urdf) { return evaluation::robotOfDescription(urdf.bytes); },
+      py::arg("urdf"),
+      "A robot of which only the description is known: rigid bodies without friction.\n\n"
+      "Its name is the file's; what recorded efforts mean is found from the data.");
   module.def(
       "with_changes", &withChanges, py::arg("robot"),
       "The run configuration with all fields replaced for which something is given, not None.\n\n"

@@ -12,6 +12,7 @@ from conftest import RIGID_BODY, UR10, URDF, fails, joint_log, recording
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.errors import BagError
+from inverse_dynamics.robot.robots import load_robot, robot_of_description
 from inverse_dynamics.verbs.screen import _ProgressLines, progress_bar
 from inverse_dynamics.verbs.tables import rounded
 
@@ -372,10 +373,11 @@ def test_help_is_a_verb_too(ids):
     assert ids("help", "robots") == ids("robots", "--help")
 
 
-def test_a_description_in_place_of_a_run_configuration_names_the_option(ids, bag, tmp_path):
+def test_a_description_is_a_robot_too(ids, bag, tmp_path):
+    assert load_robot(URDF) == robot_of_description(URDF)
     fails(
         ids("evaluate", bag, "--robot", "arm.urdf"),
-        "--robot arm.urdf: expected a run configuration, got a description; give it as --urdf arm.urdf",
+        "arm.urdf: no such file; expected a robot description",
     )
     (tmp_path / "empty.urdf").write_text(" \n")
     fails(ids("evaluate", bag, "--urdf", "empty.urdf"), "empty.urdf: is empty; expected a URDF")

@@ -75,9 +75,14 @@ std::vector<std::string> robotNames();
 
 /// The run configuration by the name of one of robotNames(), or from a file.
 ///
-/// @param name_or_file  what ends in .yaml or .yml, or has a directory, is a file.
+/// @param name_or_file  what ends in .yaml or .yml, or has a directory, is a file; one that ends in .urdf
+///   is the description of robotOfDescription().
 /// @throws PackageNotFoundError. @throws ConfigurationError: no such robot; a file that isn't right.
 RunConfiguration readRunConfiguration(const std::string& name_or_file);
+
+/// A robot of which only the description is known: rigid bodies without friction. Its name is the file's;
+/// what recorded efforts mean is found from the data.
+RunConfiguration robotOfDescription(const std::string& urdf);
 
 /// The run configuration with changes.
 ///

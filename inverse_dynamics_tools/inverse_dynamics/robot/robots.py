@@ -3,6 +3,7 @@
 
     robot = load_robot("ur10_real")        # one of the project's
     robot = load_robot("my_robot.yaml")    # one's own
+    robot = load_robot("arm.urdf")         # its description alone
 
 Which solver, from which description or model, between which links, and what its recordings look
 like. Read in C++ (inverse_dynamics_evaluation/run_configuration.hpp), strictly: unknown or missing
@@ -11,9 +12,13 @@ keys and wrong types are errors with file, line and key.
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from inverse_dynamics._core import Robot, load_robot, robot_names, with_changes
+from inverse_dynamics._core import (
+    Robot,
+    load_robot,
+    robot_names,
+    robot_of_description,
+    with_changes,
+)
 
 __all__ = [
     "RIGID_BODY",
@@ -25,13 +30,3 @@ __all__ = [
 ]
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
-
-
-def robot_of_description(urdf: Path | str) -> Robot:
-    """A robot of which only the description is known: rigid bodies without friction.
-
-    Its name is the file's; what recorded efforts mean is found from the data.
-    """
-    urdf = Path(urdf)
-    name = urdf.name.partition(".")[0]
-    return Robot(name, "", urdf, RIGID_BODY, urdf=urdf, effort="auto")

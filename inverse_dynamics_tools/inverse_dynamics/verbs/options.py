@@ -119,7 +119,7 @@ class Options:
 
     def robot(self, **more: Any) -> None:
         """--robot, read by chosen_robot()."""
-        help = "run configuration: a name that `ids robots` lists, or a YAML file"
+        help = "run configuration: a name that `ids robots` lists, or a YAML file; or a URDF"
         if not more.get("required"):
             help += "; may be left out where --urdf is given"
         self.add("--robot NAME|FILE", help, **more).completer = _robots  # type: ignore[attr-defined]
@@ -139,11 +139,6 @@ def chosen_robot(arguments: argparse.Namespace) -> Robot:
     from inverse_dynamics.robot.robots import load_robot, robot_of_description
 
     if arguments.robot is not None:
-        if arguments.robot.endswith((".urdf", ".xacro")):
-            raise UserError(
-                f"--robot {arguments.robot}: expected a run configuration, got a description; give it "
-                f"as --urdf {arguments.robot}"
-            )
         return load_robot(arguments.robot)
     described = _described(arguments)
     if described is None:
