@@ -26,11 +26,12 @@ KEYS = {
     "Eigen3": "eigen",
     "MuJoCo": "mujoco_vendor",
     "PinocchioHeaders": "pinocchio",
+    "Python3": "python3-dev",
     "SQLite3": "libsqlite3-dev",
     "orocos_kdl": "liborocos-kdl-dev",
     "pybind11": "pybind11-dev",
 }
-WITHOUT_KEY = {"CasADi", "Python3", "Threads"}
+WITHOUT_KEY = {"CasADi", "Threads"}
 
 
 def dependencies(manifest: Path) -> set[str]:
@@ -41,7 +42,8 @@ def dependencies(manifest: Path) -> set[str]:
 def found_by_cmake(package: Path) -> set[str]:
     files = [package / "CMakeLists.txt", package / "test" / "CMakeLists.txt"]
     text = "".join(file.read_text(encoding="utf-8") for file in files if file.exists())
-    names = set(re.findall(r"find_package\((\w[\w-]*)", text)) - WITHOUT_KEY
+    # An interpreter alone is part of every ROS 2.
+    names = set(re.findall(r"find_package\(([\w-]+)(?!.*COMPONENTS Interpreter\))", text)) - WITHOUT_KEY
     return {KEYS.get(name, name) for name in names}
 
 

@@ -46,7 +46,9 @@ class AddTorqueLimitedTiming : public planning_interface::PlanningResponseAdapte
     moveit_msgs::msg::RobotTrajectory planned;
     response.trajectory->getRobotTrajectoryMsg(planned);
     try {
-      auto timed = retiming_->timed(planned.joint_trajectory, slower(request));
+      PathOptions options;
+      options.slower = slower(request);
+      auto timed = retiming_->timed(planned.joint_trajectory, options);
       for (auto& point : timed.points) point.effort.clear();
       const moveit::core::RobotState start = response.trajectory->getFirstWayPoint();
       response.trajectory->setRobotTrajectoryMsg(start, timed);

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// The node `retime`: the fastest motion along a path within the torque limits of the joints.
-///
-/// | topic        | type                                | |
-/// |--------------|-------------------------------------|-----------------------------------------------|
-/// | ~/path       | trajectory_msgs/msg/JointTrajectory | in: waypoints; times are ignored              |
-/// | ~/trajectory | trajectory_msgs/msg/JointTrajectory | out: timed, with efforts; no points: refused  |
-///
-/// Each path is answered once, with its header.
+/// The node `retime`: the service `retime` of type inverse_dynamics_msgs/srv/Retime answers a path with the
+/// fastest motion along it within the torque limits of the joints.
 
 #pragma once
 
+#include <inverse_dynamics_msgs/srv/retime.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
@@ -23,17 +18,18 @@ namespace inverse_dynamics_ros {
 
 class RetimeNode : public rclcpp::Node {
  public:
-  using JointTrajectory = Retiming::JointTrajectory;
+  using Retime = inverse_dynamics_msgs::srv::Retime;
 
   explicit RetimeNode(const rclcpp::NodeOptions& options)
       : rclcpp::Node("retime", options),
         listener_((declareSolverParameters(*this), get_node_parameters_interface()), get_logger()),
         retiming_(make(NodeRobot(givenParameters(*this)))) {
     inverse_dynamics_solver::rejectUndeclared(*get_node_parameters_interface());
-    answers_ = create_publisher<JointTrajectory>("~/trajectory", rclcpp::QoS(10));
-    paths_ = create_subscription<JointTrajectory>(
-        "~/path", rclcpp::QoS(10),
-        [this](const JointTrajectory& path) { answers_->publish(answer(path)); });
+    service_ = create_service<Retime>(
+        // NOLINTNEXTLINE(performance-unnecessary-value-param): the type that rclcpp asks for
+        "retime", [this](const Retime::Request::SharedPtr q, const Retime::Response::SharedPtr r) {
+          answer(*q, *r);
+        });
   }
 
  private:
@@ -41,22 +37,24 @@ class RetimeNode : public rclcpp::Node {
     return Retiming(robot, robot.description(), listener_.get_params());
   }
 
-  JointTrajectory answer(const JointTrajectory& path) const {
+  void answer(const Retime::Request& request, Retime::Response& response) {
     try {
-      return retiming_.timed(path);
+      PathOptions options;
+      options.stops.assign(request.stops.begin(), request.stops.end());
+      if (!request.deviation.empty()) options.deviation = request.deviation.front();
+      options.slower = request.slower;
+      retiming_.carry(inverse_dynamics_control::bodyOf(request.payload, retiming_.tip()));
+      response.trajectory = retiming_.timed(request.path, options);
+      response.success = true;
     } catch (const std::exception& error) {
-      RCLCPP_ERROR(get_logger(), "%s", error.what());
+      response.message = error.what();
+      RCLCPP_WARN(get_logger(), "%s", error.what());
     }
-    JointTrajectory refused;
-    refused.header = path.header;
-    refused.joint_names = path.joint_names;
-    return refused;
   }
 
   retime::ParamListener listener_;
   Retiming retiming_;
-  rclcpp::Publisher<JointTrajectory>::SharedPtr answers_;
-  rclcpp::Subscription<JointTrajectory>::SharedPtr paths_;
+  rclcpp::Service<Retime>::SharedPtr service_;
 };
 
 }  // namespace inverse_dynamics_ros

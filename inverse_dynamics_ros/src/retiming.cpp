@@ -48,6 +48,8 @@ void copy(const VectorXd& from, std::vector<double>& to) { to.assign(from.begin(
 Retiming::Retiming(const NodeRobot& robot, const std::string& description,
                    const retime::Params& params)
     : solver_(robot.makeSolver(description)),
+      load_(solver_, {}, 0.0),
+      tip_(robot.tipLink(description)),
       joints_(
           inverse_dynamics_evaluation::recordedNames(robot.configuration(), solver_->jointNames())),
       params_(params) {
@@ -81,16 +83,28 @@ void Retiming::describeLimits(const std::string& description) {
   limits_.jerk = optional("jerk", params_.limits.jerk, n);
 }
 
-Retiming::JointTrajectory Retiming::timed(const JointTrajectory& path, double slower) const {
+void Retiming::carry(const inverse_dynamics_control::RigidBody& body) {
+  load_.aimAt(body);
+  load_.advance(0.0);
+}
+
+Retiming::JointTrajectory Retiming::timed(const JointTrajectory& path,
+                                          const PathOptions& options) const {
+  if (!(options.slower >= 1.0)) {
+    throw UserError("slower", "a number of at least 1", std::to_string(options.slower),
+                    "limits of velocity and acceleration are parameters");
+  }
   const Eigen::MatrixXd points = waypoints(path);
-  const Path way =
-      params_.deviation < 0 ? Path::spline(points) : Path::lines(points, params_.deviation);
+  const double deviation = options.deviation.value_or(params_.deviation);
+  const Path way = deviation < 0 ? Path::spline(points, options.stops)
+                                 : Path::lines(points, deviation, options.stops);
   checkRanges(way);
-  inverse_dynamics_timing::RetimeOptions options;
-  options.margin = params_.margin;
-  const Retimed fastest = inverse_dynamics_timing::retime(*solver_, way, limits_, options);
+  inverse_dynamics_timing::RetimeOptions choices;
+  choices.margin = params_.margin;
+  const Retimed fastest = inverse_dynamics_timing::retime(*solver_, way, limits_, choices);
   if (!fastest) throw UserError(inverse_dynamics_timing::text(fastest.refusal, joints_));
-  JointTrajectory result = sampled(inverse_dynamics_timing::slowed(fastest.trajectory, slower));
+  JointTrajectory result =
+      sampled(inverse_dynamics_timing::slowed(fastest.trajectory, options.slower));
   result.header = path.header;
   return result;
 }

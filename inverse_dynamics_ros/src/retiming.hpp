@@ -5,10 +5,12 @@
 
 #pragma once
 
+#include <inverse_dynamics_control/payload_ramp.hpp>
 #include <inverse_dynamics_ros/retime_parameters.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_timing/retime.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <trajectory_msgs/msg/joint_trajectory.hpp>
 #include <vector>
@@ -16,6 +18,13 @@
 #include "robot_parameters.hpp"
 
 namespace inverse_dynamics_ros {
+
+/// What belongs to one path beside its waypoints [inverse_dynamics_msgs/srv/Retime.srv].
+struct PathOptions {
+  std::vector<Eigen::Index> stops;  ///< waypoints, from 0
+  std::optional<double> deviation;  ///< rad; none: the parameter's
+  double slower = 1.0;              ///< the motion takes so many times as long, >= 1
+};
 
 /// An arm, its limits, and how paths are made from waypoints.
 class Retiming {
@@ -30,11 +39,18 @@ class Retiming {
   /// Positions, velocities, accelerations and efforts at the rate, with the header of the path.
   ///
   /// @param path  at least two different waypoints; of its points only positions are read.
-  /// @param slower  the motion takes so many times as long, >= 1.
-  /// @throws UserError  other joints, not one finite position per joint, a path that leaves the ranges of the
-  ///   joints, or that can't be held.
+  /// @throws UserError  other joints, not one position per joint, a path that leaves the ranges of the joints,
+  ///   or that can't be held, a motion that is to be faster.
   /// @throws inverse_dynamics_solver::Exception  what retime() and Path say.
-  JointTrajectory timed(const JointTrajectory& path, double slower = 1.0) const;
+  JointTrajectory timed(const JointTrajectory& path, const PathOptions& options = {}) const;
+
+  /// Has the tip carry a body on the paths to come, in place of the one before; mass 0: none.
+  ///
+  /// @throws inverse_dynamics_solver::InvalidParameterValueException  a solver that can't.
+  void carry(const inverse_dynamics_control::RigidBody& body);
+
+  /// Name of the tip link; empty: not known.
+  const std::string& tip() const { return tip_; }
 
  private:
   void describeLimits(const std::string& description);
@@ -42,7 +58,9 @@ class Retiming {
   void checkRanges(const inverse_dynamics_timing::Path& path) const;
   JointTrajectory sampled(const inverse_dynamics_timing::Trajectory& motion) const;
 
-  std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver_;
+  std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver> solver_;
+  inverse_dynamics_control::PayloadRamp load_;
+  std::string tip_;
   std::vector<std::string> joints_;  // in trajectories
   retime::Params params_;
   inverse_dynamics_timing::MotionLimits limits_;

@@ -71,7 +71,9 @@ TEST(Retiming, TakesTheShortestTimeAndFillsInEfforts) {
 }
 
 TEST(Retiming, AMotionMayBeSlower) {
-  EXPECT_NEAR(duration(retiming().timed(path(0.5), 2.0)), 2 * kFastest, 0.01 * kFastest);
+  PathOptions half;
+  half.slower = 2.0;
+  EXPECT_NEAR(duration(retiming().timed(path(0.5), half)), 2 * kFastest, 0.01 * kFastest);
 }
 
 TEST(Retiming, RefusesWhatCannotBeTimed) {
@@ -88,35 +90,92 @@ TEST(Retiming, RefusesWhatCannotBeTimed) {
       "each joint");
 }
 
-TEST(RetimeNode, AnswersEachPathOnce) {
-  rclcpp::init(0, nullptr);
-  {
-    const auto node = std::make_shared<RetimeNode>(rclcpp::NodeOptions().parameter_overrides(
-        {{"plugin_name", kSolver}, {"robot_description", kUrdf}, {"ids.gravity", kGravity}}));
-    const auto tester = std::make_shared<rclcpp::Node>("tester");
-    std::vector<JointTrajectory> answers;
-    const auto subscription = tester->create_subscription<JointTrajectory>(
-        "retime/trajectory", 10, [&](const JointTrajectory& answer) { answers.push_back(answer); });
-    const auto publisher = tester->create_publisher<JointTrajectory>("retime/path", 10);
+// A node with its client.
+class RetimeNodeTest : public testing::Test {
+ protected:
+  using Retime = inverse_dynamics_msgs::srv::Retime;
+
+  static void SetUpTestSuite() { rclcpp::init(0, nullptr); }
+  static void TearDownTestSuite() { rclcpp::shutdown(); }
+
+  Retime::Response answer(const Retime::Request& request) {
     rclcpp::executors::SingleThreadedExecutor executor;
-    executor.add_node(node);
-    executor.add_node(tester);
-    const auto until = [&](const auto& condition) {
-      for (int k = 0; k < 1000 && !condition(); ++k)
-        executor.spin_once(std::chrono::milliseconds(10));
-      return condition();
-    };
-    ASSERT_TRUE(until([&] {
-      return publisher->get_subscription_count() > 0 && subscription->get_publisher_count() > 0;
-    }));
-    publisher->publish(path(0.5));
-    publisher->publish(path(1.5));  // out of range
-    ASSERT_TRUE(until([&] { return answers.size() == 2; }));
-    EXPECT_NEAR(duration(answers[0]), kFastest, 0.005 * kFastest);
-    EXPECT_EQ(answers[1].points.size(), 0u);
-    EXPECT_EQ(answers[1].header.frame_id, "base");
+    executor.add_node(node_);
+    executor.add_node(user_);
+    EXPECT_TRUE(client_->wait_for_service(std::chrono::seconds(10)));
+    auto result = client_->async_send_request(std::make_shared<Retime::Request>(request));
+    if (executor.spin_until_future_complete(result, std::chrono::seconds(10)) !=
+        rclcpp::FutureReturnCode::SUCCESS) {
+      return Retime::Response();
+    }
+    return *result.get();
   }
-  rclcpp::shutdown();
+
+  static Retime::Request request(double end) {
+    Retime::Request request;
+    request.path = path(end);
+    return request;
+  }
+
+ private:
+  std::shared_ptr<RetimeNode> node_ =
+      std::make_shared<RetimeNode>(rclcpp::NodeOptions().parameter_overrides(
+          {{"plugin_name", kSolver}, {"robot_description", kUrdf}, {"ids.gravity", kGravity}}));
+  rclcpp::Node::SharedPtr user_ = std::make_shared<rclcpp::Node>("user");
+  rclcpp::Client<Retime>::SharedPtr client_ = user_->create_client<Retime>("retime");
+};
+
+TEST_F(RetimeNodeTest, AnswersWithTheFastestMotion) {
+  const Retime::Response done = answer(request(0.5));
+  ASSERT_TRUE(done.success) << done.message;
+  EXPECT_EQ(done.message, "");
+  EXPECT_EQ(done.trajectory.header.frame_id, "base");
+  EXPECT_NEAR(duration(done.trajectory), kFastest, 0.005 * kFastest);
+}
+
+TEST_F(RetimeNodeTest, TakesWhatTheRequestSays) {
+  Retime::Request wanted = request(0.5);
+  wanted.path.points.insert(wanted.path.points.begin() + 1, wanted.path.points[0]);
+  wanted.path.points[1].positions = {0.25};
+  EXPECT_NEAR(duration(answer(wanted).trajectory), kFastest, 0.005 * kFastest);
+  // 0.25 m are too short for 1 m/s: up with (9 - 4) / 2 m/s^2, to rest with (9 + 4) / 2 m/s^2, twice
+  const double stopping = 2 * std::sqrt(2 * 0.25 * (1 / 2.5 + 1 / 6.5));
+  wanted.stops = {1};
+  EXPECT_NEAR(duration(answer(wanted).trajectory), stopping, 0.005 * stopping);
+  wanted.stops.clear();
+  wanted.deviation = {0.0};  // a line goes on straight
+  wanted.slower = 2.0;
+  EXPECT_NEAR(duration(answer(wanted).trajectory), 2 * kFastest, 0.01 * kFastest);
+}
+
+TEST_F(RetimeNodeTest, CarriesThePayloadOfOneRequest) {
+  Retime::Request loaded = request(0.5);
+  loaded.payload.header.frame_id = "cart";
+  loaded.payload.inertia.m = 1.0;  // 3 kg, 6 N
+  const auto accelerated = answer(loaded).trajectory;
+  ASSERT_FALSE(accelerated.points.empty());
+  for (const auto& point : accelerated.points)
+    EXPECT_NEAR(point.effort[0], 3.0 * point.accelerations[0] + 6.0, 1e-9);
+  EXPECT_NEAR(duration(answer(request(0.5)).trajectory), kFastest, 0.005 * kFastest);
+}
+
+TEST_F(RetimeNodeTest, SaysWhyThereIsNoMotion) {
+  const Retime::Response refused = answer(request(1.5));
+  EXPECT_FALSE(refused.success);
+  EXPECT_EQ(refused.message.substr(0, 47), "path: joint slide: expected positions from -1.0");
+  EXPECT_TRUE(refused.trajectory.points.empty());
+  const auto message = [&](const auto& change) {
+    Retime::Request wrong = request(0.5);
+    change(wrong);
+    return answer(wrong).message;
+  };
+  EXPECT_EQ(message([](auto& wrong) { wrong.slower = 0.5; }).substr(0, 44),
+            "slower: expected a number of at least 1, got");
+  EXPECT_NE(message([](auto& wrong) { wrong.payload.inertia.m = 10.0; }).find("slide"),
+            std::string::npos);
+  EXPECT_NE(message([](auto& wrong) { wrong.payload.header.frame_id = "tool0"; }).find("cart"),
+            std::string::npos);
+  EXPECT_NE(message([](auto& wrong) { wrong.stops = {7}; }).find("7"), std::string::npos);
 }
 
 }  // namespace
