@@ -20,7 +20,10 @@ from launch.actions import (
     RegisterEventHandler,
 )
 from launch.event_handlers import OnProcessExit
-from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.launch_description_sources import (
+    PythonLaunchDescriptionSource,
+    get_launch_description_from_python_launch_file,
+)
 from launch.substitutions import LaunchConfiguration
 from launch_ros.parameter_descriptions import ParameterValue
 
@@ -238,10 +241,11 @@ def evaluate_robot(name: str) -> LaunchDescription:
 
 
 def forward(name: str) -> LaunchDescription:
-    """Launch description of a launch file of this package, with its arguments, under another name."""
-    return LaunchDescription(
-        [IncludeLaunchDescription(PythonLaunchDescriptionSource(launch_file(name)))]
-    )
+    """Launch description of a launch file of this package, with its arguments, under another name.
+
+    Not included: that asks for required arguments even where the command line gives them.
+    """
+    return get_launch_description_from_python_launch_file(launch_file(name))
 
 
 def launch_file(name: str) -> str:
