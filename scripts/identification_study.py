@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Identifies the real robots whose recordings are public, and writes docs/identification_results.md.
+"""Models of real robots, known robots and payloads: tables of docs/identification_results.md.
 
-    ./scripts/study identification            # prints the page; ten minutes
-    ./scripts/study identification --write    # replaces it
+    ./scripts/study identification            # prints the tables; ten minutes
+    ./scripts/study identification --write    # replaces them
 
 All is what `ids identify` does by default.
 """
 
 from __future__ import annotations
 
-import sys
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from known_truth import MOST_ERROR, Truth
 from payload_truth import STEP, Arm, trials
-from studies import DOCS, ROBOTS, table
+from studies import ROBOTS, show, table
 
 from inverse_dynamics import identify
 from inverse_dynamics.data.public_recordings import data_directory
@@ -38,43 +37,6 @@ LOADS = (
     ("ur10", 5.0, 4.0, False, True),
     ("ur10", 5.0, 8.0, False, True),
 )
-
-HEAD = """\
-<!-- SPDX-License-Identifier: Apache-2.0 -->
-<!-- Written by scripts/identification_study.py. -->
-# Identified from recordings of real robots
-
-## Fit here, tested there
-
-Root mean square error [N m], of all samples and of moving ones; in brackets that of the best of ordinary, weighted
-and consistent least squares with viscous friction, step, offset and rotor inertia. Share in the [95 %
-band](identification.md#on-another-day), of all joints and of the worst, and its mean width by that of the constant
-one that would hold 95 %. The constant band of the fit holds 68 to 92 % on the UR10e.
-
-| fitted to | tested on | error | moving | in band | worst | width |
-|---|---|---|---|---|---|---|
-| UR10e, 12 Feb | 19 Feb | 1.90 (2.10) | 1.51 (1.83) | 99 % | 98 % | 1.14 |
-| | 17 Jan, point to point | 2.63 (2.70) | 1.66 (1.97) | 100 % | 99 % | 1.12 |
-| | 5 Feb | 2.60 (2.78) | 2.56 (2.75) | 98 % | 97 % | 1.24 |
-| UR10e, 12 and 19 Feb | 17 Jan, point to point | 2.59 (2.68) | 1.64 (1.95) | 99 % | 99 % | 1.04 |
-| | 6 Feb | 2.22 (2.23) | 2.16 (2.31) | 98 % | 97 % | 1.34 |
-| | 10 Feb | 2.25 (2.41) | 2.44 (2.59) | 98 % | 97 % | 1.42 |
-| KUKA KR300, A and B | C | 466 (525) | 389 (423) | 99 % | 99 % | 1.23 |
-| Panda | another Panda | 0.406 (0.401) | 0.406 (0.401) | 88 % | 60 % | 1.02 |
-| another Panda | Panda | 0.398 (0.388) | 0.398 (0.388) | 89 % | 65 % | 1.06 |
-
-Recordings: [UR10e](https://github.com/shamilmamedov/dynamic_calibration),
-[KR300](https://github.com/JonasWeigand/Robot_Identification), [another
-Panda](https://github.com/marcocognetti/FrankaEmikaPandaDynModel). At rest, 10 to 40 % of the UR10e's time, friction
-is anything up to its step, and no law predicts it. Friction of two Pandas differs by factors of 2 to 5: identify your
-own.
-
-## On held-out blocks
-
-Root mean square errors [N m]: models fitted to, and chosen on, four of five contiguous blocks predict the fifth. The
-UR10's wrist 3 stands twice, with the same friction: a step off zero velocity would have 1.37 and a mean of 1.08, but
-be a constant force at rest. `./scripts/study identification --write` makes these tables.
-"""
 
 KNOWN = f"""\
 ## Robots that are known
@@ -172,10 +134,7 @@ def main() -> None:
     with TemporaryDirectory() as folder:
         directory = Path(folder)
         sections = [*map(real_robot, ROBOTS), known_robots(directory), payloads(directory)]
-    text = "\n".join([HEAD, *sections])
-    print(text, end="")
-    if "--write" in sys.argv:
-        (DOCS / "identification_results.md").write_text(text, encoding="utf-8")
+    show("\n".join(sections).rstrip(), "identification_results.md", "identification_study")
 
 
 if __name__ == "__main__":
