@@ -140,7 +140,7 @@ def pandas(clones: Path, scratch: Path) -> Arm:
     q, qd, tau = (numbers.reshape(-1, 7) for numbers in states)
     other = scratch / "panda.npz"
     np.savez(other, time=time, q=q, qd=qd, tau=tau)
-    here, there = "Panda", "another Panda"
+    here, there = "one", "another"
     return Arm(
         name="Panda",
         robot=load_robot("panda_real"),
@@ -164,6 +164,11 @@ class Samples:
         kept = np.flatnonzero(e.samples.kept)
         rows = kept[:: 1 if most is None else 1 + len(kept) // most]
         return cls(e.log.q[rows], e.log.qd[rows], e.qdd[rows], e.measured[rows])
+
+    @property
+    def moving(self) -> Samples:
+        """Those at which a joint moves."""
+        return Samples(*(values[self.moves] for values in vars(self).values()))
 
     @property
     def moves(self) -> Mask:
@@ -231,7 +236,7 @@ def rows_of(arm: Arm, scratch: Path) -> list[tuple[str, ...]]:
             plain, same = (
                 least_squares(found.robot, train, test, law) for law in ("step", found.law)
             )
-            own = least_squares(found.robot, [test], test, found.law)["consistent"]
+            own = least_squares(found.robot, [test.moving], test, found.law)["consistent"]
             assert e.band is not None
             kept = e.samples.kept
             errors = (e.measured - e.computed)[kept]
@@ -253,12 +258,17 @@ def _cells(
     inside = (np.abs(errors) <= half).mean(axis=0)
     width = half.mean() / np.quantile(np.abs(errors), 0.95, axis=0).mean()
     return [
-        *(" ".join(f"{x:.3g}" for x in of) for of in means),
-        f"{_mean(errors):.3g}",
-        *(f"{x:.3g}" for x in (*moving, _mean(errors[moves]), _mean(own[moves]))),
+        *(" ".join(map(_text, of)) for of in means),
+        _text(_mean(errors)),
+        *map(_text, (*moving, _mean(errors[moves]), _mean(own[moves]))),
         *(f"{100 * share:.0f} %" for share in (inside.mean(), inside.min())),
         f"{width:.2f}",
     ]
+
+
+def _text(error: Floats) -> str:
+    """Three digits."""
+    return f"{float(error):#.3g}".rstrip(".")
 
 
 def _mean(errors: Floats) -> Floats:

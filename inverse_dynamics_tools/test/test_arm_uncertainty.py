@@ -17,7 +17,7 @@ from inverse_dynamics.errors import InvalidParameterError, RobotError
 from inverse_dynamics.evaluation import bands
 from inverse_dynamics.identification.cross_validation import noise_in_motion
 from inverse_dynamics.identification.payload import estimate_payload
-from inverse_dynamics.identification.uncertainty import read_uncertainty
+from inverse_dynamics.identification.uncertainty import read_uncertainty, usual_level
 from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.robot.model_errors import model_errors_file
 from inverse_dynamics.robot.robots import RIGID_BODY
@@ -159,6 +159,12 @@ def test_joints_that_never_leave_the_step_of_friction_have_a_noise():
     widths = (0.1, 0.3, 0.005)
     noise = noise_in_motion(errors, qd, [{"width": width} for width in widths])
     np.testing.assert_allclose(noise * bands.NORMAL, [5.0, 1.0, 1.0])
+
+
+def test_offsets_of_another_day_are_a_share_of_the_range_of_efforts():
+    """The limit; three times the greatest torque where there is none, and at most seven times."""
+    level = usual_level(np.full(3, 20.0), np.array([87.0, np.inf, 1e4]))
+    np.testing.assert_allclose(level, bands.LEVEL * np.array([87.0, 60.0, 140.0]))
 
 
 def test_the_band_of_a_recording_is_made_in_parts(model, monkeypatch):

@@ -55,7 +55,12 @@ from inverse_dynamics.identification.uncertainty import (
     levels_of,
     with_levels,
 )
-from inverse_dynamics.robot.descriptions import link_of, parse_description, read_description
+from inverse_dynamics.robot.descriptions import (
+    effort_limits,
+    link_of,
+    parse_description,
+    read_description,
+)
 from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot
 
 if TYPE_CHECKING:
@@ -176,7 +181,10 @@ def identify(
     described = _core.FastModel.from_urdf(
         description, root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
-    held_out = _held_out(fitter, described, baselines(robot, description), groups, progress)
+    limits = effort_limits(robot.urdf, description, fitter.joint_names)
+    by_day = len(evaluations) > 1 and blocks is None
+    level = limits if by_day else None
+    held_out = _held_out(fitter, described, level, baselines(robot, description), groups, progress)
     chosen = choose(fitter, cut)
     seconds["fitting"] = time.perf_counter() - begin
     begin = time.perf_counter()
@@ -186,9 +194,10 @@ def identify(
         evaluations,
         fitter,
         cut,
+        limits=limits,
         held_out=held_out,
         chosen=chosen,
-        by_day=len(evaluations) > 1 and blocks is None,
+        by_day=by_day,
     )
     seconds["intervals"] = time.perf_counter() - begin
     notes = tuple(dict.fromkeys((*posture.notes, *found.notes)))
@@ -259,6 +268,7 @@ def _cut(evaluations: Sequence[Evaluation], blocks: int) -> list[Block]:
 def _held_out(
     fitter: ArmFitter,
     described: FastModel,
+    limits: Floats | None,
     solvers: Mapping[str, Solver],
     groups: Sequence[Sequence[Block]],
     progress: Progress,
@@ -272,7 +282,7 @@ def _held_out(
         others = [block for i, other in enumerate(groups) if i != k for block in other]
         fitted = [row for i, other in enumerate(rows) if i != k for row in other]
         chosen = choose(fitter, others)
-        band, solver = _banded(fitter, described, chosen, others)
+        band, solver = _banded(fitter, described, limits, chosen, others)
         for block in group:
             motion = block.q, block.qd, block.qdd
             computed = baseline_torques(solvers, motion, fitted)
@@ -297,7 +307,11 @@ def _held_out(
 
 
 def _banded(
-    fitter: ArmFitter, described: FastModel, chosen: Chosen, blocks: Sequence[Block]
+    fitter: ArmFitter,
+    described: FastModel,
+    limits: Floats | None,
+    chosen: Chosen,
+    blocks: Sequence[Block],
 ) -> tuple[TorqueBand, Solver]:
     """The band of a fit to blocks, and its solver. Errors in time are alike: fewer samples tell the covariance."""
     step = 1 + sum(map(len, blocks)) // _BAND_SAMPLES
@@ -313,7 +327,7 @@ def _banded(
     factor = factor_of(fitter, chosen.fit, later, known, law=chosen.law)
     model = described.identified(_model(chosen, blocks, None))
     solver = solver_of_text(model.file_text(name="fit", source="", validity=""))
-    return band_of(chosen, factor, blocks), solver
+    return band_of(chosen, factor, blocks, limits), solver
 
 
 def _computed(solver: Solver, block: Block) -> Computed:
@@ -329,6 +343,7 @@ def _result(
     fitter: ArmFitter,
     cut: Sequence[Block],
     *,
+    limits: Floats,
     held_out: Sequence[HeldOutBlock],
     chosen: Chosen,
     by_day: bool,
@@ -388,7 +403,7 @@ def _result(
         intervals=intervals(known, described, first.units),
         prior_decided=prior_decided(known, fitter.prior, links),
         factor=factor,
-        band=with_levels(band_of(chosen, factor, cut), levels),
+        band=with_levels(band_of(chosen, factor, cut, limits), levels),
         levels=levels,
         findings=(
             *gravity,

@@ -38,6 +38,7 @@ _RIDGE = 1e-12  # by the information: rounding, of directions that change no tor
 _MOST_ROWS = 10_000  # of held-out errors: half a megabyte; they are thinned
 _APART = 10.0  # s between blocks: many correlation times
 _GREATEST = 0.995  # quantile that is taken for the greatest torque
+_USUAL_RANGE, _MOST_RANGE = 3.0, 7.0  # greatest torques
 _MOVES = 0.05  # of the greatest velocity
 _USUAL_COUNTS = 2  # recordings
 
@@ -64,18 +65,30 @@ def factor_of(
     return factor
 
 
-def band_of(chosen: Chosen, factor: Floats, blocks: Sequence[Block]) -> TorqueBand:
-    """The band of a fit to blocks, of whose level on other days nothing is known but what is usual."""
+def band_of(
+    chosen: Chosen, factor: Floats, blocks: Sequence[Block], limits: Floats | None
+) -> TorqueBand:
+    """The band of a fit to blocks, of whose level on other days nothing is known but what is usual.
+
+    limits: (n,) of efforts, infinite where they aren't known; None: a band for the same day.
+    """
     _, qd, _, tau = (np.abs(np.concatenate(v)) for v in zip(*together(blocks), strict=True))
     friction = chosen.fit.friction
+    none, greatest = np.zeros(len(friction)), np.quantile(tau, _GREATEST, axis=0)
     return TorqueBand(
         arm=_core.ArmUncertainty(friction, factor),
         friction=friction,
         noise=chosen.noise,
-        level=LEVEL * np.quantile(tau, _GREATEST, axis=0),
-        share=np.full(len(friction), SHARE),
+        level=none if limits is None else usual_level(greatest, limits),
+        share=none if limits is None else none + SHARE,
         seen=qd.max(axis=0),
     )
+
+
+def usual_level(greatest: Floats, limits: Floats) -> Floats:
+    """(n,) of offsets. Some descriptions state limits that no motor has."""
+    usual = np.where(np.isfinite(limits), limits, _USUAL_RANGE * greatest)
+    return np.asarray(LEVEL * np.minimum(usual, _MOST_RANGE * greatest))
 
 
 def levels_of(

@@ -64,7 +64,7 @@ def test_notes_leave_out_that_a_model_could_be_identified():
 @ROBOTS
 def test_bands_hold_on_unseen_blocks(identified, name):
     coverage = identified(name).coverage
-    assert 0.90 <= coverage.mean() <= 0.995  # other days, too, are allowed for
+    assert 0.92 <= coverage.mean() <= 0.98  # of blocks of the same day
     assert coverage.min() >= 0.85
 
 
@@ -378,6 +378,9 @@ OWN_UNITS = {
 }
 
 
+RANGE = np.array([87.0] * 4 + [12.0] * 3)  # N m, of the Panda's torque sensors
+
+
 class Day(Known):
     """The known Panda on a day with so much friction, and offsets; at last it rests for 8 s."""
 
@@ -385,7 +388,7 @@ class Day(Known):
         super().__init__()
         random = np.random.default_rng(seed)
         self.share, n = share, len(self.model.joint_names)
-        self.offset = random.normal(0, 0.05, n)
+        self.offset = random.normal(0, 0.003, n) * RANGE
         self.holding = STEP * random.uniform(-1, 1, n)  # friction of the arm at rest
 
     def torques(self, q, qd, qdd):
