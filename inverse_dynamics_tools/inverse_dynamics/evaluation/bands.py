@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How far measured torques may be from an identified model's: half the width of a 95 % band, at each state.
 
-    half^2 = 1.96^2 (noise^2 + variance + level^2 + (share f)^2 + (fv beyond / 2)^2) + (0.95 h r)^2
+    half^2 = 1.96^2 (noise^2 + variance + level^2 + (share f)^2 + (fv beyond / 2)^2) + (0.95 h r (1 + s))^2
 
 noise     of held-out data while the joint moves
 variance  of the torques by the covariance of the model's parameters
@@ -9,6 +9,7 @@ level     of offsets from day to day, N m
 share     by which friction f differs from day to day: temperature, wear
 beyond    velocity above the greatest one seen: half of the viscous friction fv that the law extrapolates
 h r       at rest friction is anything between -h and h, the height of its step; r = exp(-(qd / v)^2)
+s         |tanh(qd / width)|: a joint that creeps may still have the friction of the motion before
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ SHARE = 0.12
 warms up falls by a third."""
 
 _REST = 0.02  # of the greatest velocity: friction has its law's value from about twice that on
-_REST_WIDTHS = 2.0  # the same in widths of the step
+_REST_WIDTHS = 1.5  # the same in widths of the step
 _ROWS = 50_000  # samples in memory at a time
 
 
@@ -61,9 +62,9 @@ class TorqueBand:
         """(N, n) at states (N, n). solver: of the model."""
         friction = solver.friction_vector(qd, q=q)
         gravity = np.abs(solver.gravity_vector(q))
-        fv, fc, fl, fs = (
+        fv, fc, fl, fs, width = (
             np.array([law.get(key, 0.0) for law in self.friction])
-            for key in ("fv", "fc", "fl", "fs")
+            for key in ("fv", "fc", "fl", "fs", "width")
         )
         extrapolated = 0.5 * fv * np.maximum(np.abs(qd) - self.seen, 0.0)
         variance = (
@@ -74,6 +75,7 @@ class TorqueBand:
             + extrapolated**2
         )
         at_rest = (fc + fl * gravity + fs) * rest_share(qd, self.friction, self.seen)
+        at_rest *= 1 + np.abs(np.tanh(qd / width))
         return np.asarray(np.sqrt(NORMAL**2 * variance + (UNIFORM * at_rest) ** 2))
 
     def of_recording(self, solver: Solver, q: Floats, qd: Floats, qdd: Floats) -> Floats:

@@ -388,7 +388,7 @@ class Day(Known):
         super().__init__()
         random = np.random.default_rng(seed)
         self.share, n = share, len(self.model.joint_names)
-        self.offset = random.normal(0, 0.003, n) * RANGE
+        self.offset = random.normal(0, 0.005, n) * RANGE  # an accuracy of 1 %
         self.holding = STEP * random.uniform(-1, 1, n)  # friction of the arm at rest
 
     def torques(self, q, qd, qdd):
@@ -435,6 +435,10 @@ def test_friction_at_rest_is_unknown_and_zero_at_best(identified_on):
     rests = np.abs(other.log.qd).max(axis=1) < 1e-3
     heights = np.array([law["fc"] for law in found.model.friction])
     assert (other.band[rests] >= 0.95 * heights).all()  # 95 % of what is anywhere between them
+    creeping = 0.3 * np.array([law["width"] for law in found.model.friction])[None]
+    friction = solver.friction_vector(creeping, q=still[None]) - found.offsets
+    half = found.band.half_widths(solver, still[None], creeping, still[None])
+    assert (friction - half <= -0.85 * heights).all()  # that of the motion before
     fast = np.where(np.arange(n) == 0, 3.0, 0.0) * found.model.seen[1, :, 1]  # beyond what was seen
     seen = fast / 3.0
     band = [
