@@ -129,10 +129,6 @@ def test_mujoco_takes_both(found):
     model = mujoco.MjModel.from_xml_string(mjcf_text(found))
     assert model.nu == model.nv == len(JOINTS)
     np.testing.assert_allclose(model.dof_armature, found.model.rotor_inertia)
-    np.testing.assert_allclose(model.dof_frictionloss, dynamics(urdf_text(found))[:, 1])
-    np.testing.assert_allclose(
-        np.ravel(model.dof_damping)[: model.nv], dynamics(urdf_text(found))[:, 0]
-    )
     data = mujoco.MjData(model)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_LIMIT)
     model.dof_damping[:] = model.dof_frictionloss[:] = 0.0
@@ -144,3 +140,21 @@ def test_mujoco_takes_both(found):
         data.qpos[:], data.qvel[:], data.qacc[:] = q, qd, qdd
         mujoco.mj_inverse(model, data)
         np.testing.assert_allclose(data.qfrc_inverse, expected, atol=1e-9 * abs(expected).max())
+
+
+def test_mujoco_friction_rises_as_the_law_does(found):
+    """By a ramp over the width of its step, whatever else moves the joint, at rest too."""
+    mujoco = pytest.importorskip("mujoco")
+    wide = with_friction(replace(found, model=arm()), width=0.3)
+    text = mjcf_text(wide)
+    assert "width" not in text
+    model = mujoco.MjModel.from_xml_string(text)
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_LIMIT)
+    data = mujoco.MjData(model)
+    fv, fc = np.array([[law[key] for law in wide.model.friction] for key in ("fv", "fc")])
+    for v in (-0.5, -0.3, -0.1, 0.0, 0.05, 0.2, 0.5):
+        data.qvel[:] = v
+        data.qfrc_applied[:] = 5.0
+        mujoco.mj_forward(model, data)
+        friction = -(data.qfrc_passive + data.qfrc_constraint)
+        assert (abs(friction - fv * v - fc * np.tanh(v / 0.3)) < 0.12 * fc).all()

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.robot.chain_geometry import JointGeometry
 
 _STATES = 2000  # of the recordings, over which the nearest friction is found
+_RAMP = 1.25  # widths of tanh(v / width), over which the nearest ramp rises
 _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -49,7 +50,8 @@ def urdf_text(found: Identification) -> str:
         _set_inertial(_named(robot, "link", joint.link), in_link)
         for link in lumped[joint.link]:
             _remove_inertial(_named(robot, "link", link))
-    for name, (damping, friction) in zip(found.joints, _damping_and_friction(found), strict=True):
+    fitted = _damping_and_friction(found, np.zeros(len(found.joints)))
+    for name, (damping, friction) in zip(found.joints, fitted, strict=True):
         _set_dynamics(_named(robot, "joint", name), damping, friction)
     robot.insert(0, ElementTree.Comment(_comment(found, lumped)))
     robot[0].tail = robot.text or "\n"
@@ -59,8 +61,10 @@ def urdf_text(found: Identification) -> str:
 def mjcf_text(found: Identification) -> str:
     """A MuJoCo model of the chain, with a motor at each joint. Raises RobotError.
 
-    Joints have armature, damping and frictionloss by a <default> class each, for use in another model too.
+    Joints have armature and friction by a <default> class each, for use in another model too.
     """
+    ramps = np.array([_RAMP * law["width"] for law in found.model.friction])
+    H = identified_model(found).inertia_matrix(np.zeros(len(found.joints)))
     geometry = chain_geometry(read_description(urdf_of(found)), found.robot.root, found.joints)
     mujoco = ElementTree.Element("mujoco", model=found.robot.name)
     mujoco.append(ElementTree.Comment(f" {_comment(found, {})} "))
@@ -71,18 +75,21 @@ def mjcf_text(found: Identification) -> str:
     defaults = ElementTree.SubElement(mujoco, "default")
     body = ElementTree.SubElement(mujoco, "worldbody")
     motors = ElementTree.SubElement(mujoco, "actuator")
-    for joint, parameters, rotor, (damping, friction) in zip(
+    for joint, parameters, rotor, (damping, friction), slowness in zip(
         geometry,
         found.model.parameters,
         found.model.rotor_inertia,
-        _damping_and_friction(found),
+        _damping_and_friction(found, ramps),
+        2 * ramps / np.diag(np.linalg.inv(H)),
         strict=True,
     ):
         values = {"armature": rotor, "damping": damping, "frictionloss": friction}
+        written = {key: yaml_number(value) for key, value in values.items()}
+        if friction > 0:  # a constraint without impedance: a ramp up to its greatest force
+            written["solreffriction"] = _numbers((slowness / friction, 1.0))
+            written["solimpfriction"] = _numbers((1e-4, 1e-4))
         ElementTree.SubElement(
-            ElementTree.SubElement(defaults, "default", {"class": joint.name}),
-            "joint",
-            {key: yaml_number(value) for key, value in values.items()},
+            ElementTree.SubElement(defaults, "default", {"class": joint.name}), "joint", written
         )
         body = _mjcf_body(body, joint, turned(parameters, joint.rotation_from_z))
         ElementTree.SubElement(motors, "motor", name=joint.name, joint=joint.name)
@@ -202,16 +209,19 @@ def _set_dynamics(joint: ElementTree.Element, damping: float, friction: float) -
     dynamics.set("friction", yaml_number(friction))
 
 
-def _damping_and_friction(found: Identification) -> list[tuple[float, float]]:
-    """Of the law `damping qd + friction sign(qd)` that is nearest to the model's over the recorded states."""
+def _damping_and_friction(found: Identification, ramps: Floats) -> list[tuple[float, float]]:
+    """Of the law `damping qd + friction step(qd)` that is nearest to the model's over the recorded states.
+
+    ramps: (n,) rad/s (prismatic m/s), over which each step rises.
+    """
     q, qd = (np.concatenate([getattr(block, key) for block in found.blocks]) for key in ("q", "qd"))
     every = slice(None, None, max(1, len(q) // _STATES))
     q, qd, still = q[every], qd[every], np.zeros_like(q[every])
     engine = identified_model(found)
     law = engine.torques(q, qd, still) - engine.regressor(q, qd, still) @ engine.parameters
     return [
-        _nearest(np.column_stack((v, np.sign(v))), torque - offset)
-        for v, torque, offset in zip(qd.T, law.T, found.offsets, strict=True)
+        _nearest(np.column_stack((v, np.clip(v / max(ramp, 1e-9), -1, 1))), torque - offset)
+        for v, torque, offset, ramp in zip(qd.T, law.T, found.offsets, ramps, strict=True)
     ]
 
 
@@ -228,7 +238,7 @@ def _comment(found: Identification, lumped: Mapping[str, Sequence[str]]) -> str:
     left_out = [
         text
         for text, there in (
-            ("the width of the step", True),
+            ("the width of the step", bool(lumped)),
             ("offsets", bool(np.any(found.offsets))),
             ("the shift of the step", bool(np.any(found.shifts))),
             (
@@ -247,8 +257,9 @@ def _comment(found: Identification, lumped: Mapping[str, Sequence[str]]) -> str:
         f"Inertia and friction by `ids identify` from {', '.join(p.name for p in found.recordings)}.",
         "Masses of single links are mostly those of the description before: torques don't determine them.",
         "Damping and friction are those nearest to the identified law over the recorded motion.",
-        f"Not held here: {'; '.join(left_out)}.",
     ]
+    if left_out:
+        sentences.append(f"Not held here: {'; '.join(left_out)}.")
     if lumped:
         sentences.append("Rotor inertia has no place in a URDF either.")
     if parts:
