@@ -75,7 +75,7 @@ struct FastModel::Data {
     }
     for (const auto& links : model.row_parameters) rows.push_back(fast::regrouped(frames, links));
     fillRowLanes();
-    fillFriction(model.friction);
+    fillFriction(model);
     own = fast::ownPlacements(frames, chain);
     fillRobot();
   }
@@ -92,8 +92,11 @@ struct FastModel::Data {
     }
   }
 
-  void fillFriction(const std::vector<FrictionLaw>& laws) {
+  void fillFriction(const Model& model) {
+    const std::vector<FrictionLaw>& laws = model.friction;
     if (laws.empty()) return;
+    coupling = model.coupling.transpose();
+    robot.changing_steps = coupling.size() > 0;
     friction.resize(fast::kFrictionNumbers * stride, 0.0);
     for (std::size_t j = 0; j < laws.size(); ++j) {
       FrictionForm form = formOf(laws[j]);
@@ -120,6 +123,7 @@ struct FastModel::Data {
     robot.rows = rows.empty() ? nullptr : row_pointers.data();
     robot.row_lanes = rows.empty() ? nullptr : row_lanes.data();
     robot.friction = friction.empty() ? nullptr : friction.data();
+    robot.coupling = coupling.size() == 0 ? nullptr : coupling.data();
     robot.stride = static_cast<int>(stride);
     robot.base = fast::baseOf(frames, chain);
     robot.tip = fast::tipOf(frames, chain);
@@ -135,6 +139,7 @@ struct FastModel::Data {
   std::vector<const Body*> row_pointers;
   std::vector<double> row_lanes;
   std::vector<double> friction;
+  OwnedMatrix coupling;  // [motor][joint]
   Robot robot{};
 };
 

@@ -44,6 +44,33 @@ class Load {
   Eigen::Map<Eigen::VectorXd> g;
 };
 
+/// `C x`, of coefficients that aren't zero: a NaN goes no further.
+template <class Matrix>
+void multiply(const Matrix& C, const ConstVectorRef& x, VectorRef result) {
+  result.setZero();
+  for (Eigen::Index i = 0; i < C.rows(); ++i) {
+    for (Eigen::Index j = 0; j < C.cols(); ++j) {
+      if (C(i, j) != 0) result[i] += C(i, j) * x[j];
+    }
+  }
+}
+
+/// Velocities of what has friction: of motors, or of joints.
+class MotorVelocities {
+ public:
+  MotorVelocities(const Model& model, const ConstVectorRef& qd)
+      : memory_(qd.size()), v(&memory_[0], qd.size()) {
+    v = qd;
+    if (model.coupling.size() > 0) multiply(model.coupling, qd, v);
+  }
+
+ private:
+  Scratch<double> memory_;
+
+ public:
+  Eigen::Map<Eigen::VectorXd> v;
+};
+
 std::string nameOf(const Model& model, std::size_t joint) {
   return model.chain.joints()[joint].name;
 }
@@ -65,6 +92,26 @@ void checkFrictionLaws(const Model& model) {
   }
   for (std::size_t j = 0; j < model.friction.size(); ++j) {
     checkFriction(model.friction[j], where + ": friction of joint " + nameOf(model, j));
+  }
+}
+
+void checkCoupling(const Model& model) {
+  const auto n = static_cast<Eigen::Index>(model.friction.size());
+  const OwnedMatrix& C = model.coupling;
+  if (C.size() == 0) return;
+  const std::string where = "model " + model.name;
+  if (C.rows() != n || C.cols() != n || !C.allFinite()) {
+    throw ModelError(where, "coupling",
+                     "finite numbers of " + std::to_string(n) + " laws of friction",
+                     std::to_string(C.rows()) + " x " + std::to_string(C.cols()), "");
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto joint = static_cast<std::size_t>(j);
+    if (!dependsOnLoad(model.friction[joint]) || C.row(j) == Eigen::RowVectorXd::Unit(n, j))
+      continue;
+    throw ModelError(where, "friction of joint " + nameOf(model, joint),
+                     "no load term fl, as its motor moves other joints too", "one",
+                     "take Coulomb friction fc, or no coupling");
   }
 }
 
@@ -106,6 +153,7 @@ void checkExperience(const Model& model) {
 void checkModel(const Model& model) {
   checkParameterSets(model.chain, setsOf(model));
   checkFrictionLaws(model);
+  checkCoupling(model);
   checkDriveGains(model);
   checkExperience(model);
 }
@@ -159,7 +207,13 @@ void frictionVector(const Model& model, const ConstVectorRef& q, const ConstVect
   if (model.friction.empty()) {
     f = 0.0 * qd;  // keeps a NaN
   } else {
-    frictionVector(model.friction, qd, Load(model, q).g, f);
+    const MotorVelocities motors(model, qd);
+    frictionVector(model.friction, motors.v, Load(model, q).g, f);
+    if (model.coupling.size() == 0) return;
+    Scratch<double> memory(f.size());
+    Eigen::Map<Eigen::VectorXd> of_motors(&memory[0], f.size());
+    of_motors = f;
+    multiply(model.coupling.transpose(), of_motors, f);
   }
 }
 
@@ -168,11 +222,22 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
   if (model.friction.empty()) return;
   const Eigen::Index n = model.chain.jointCount();
   const Load load(model, q);
+  const MotorVelocities motors(model, qd);
   // What saturates has at infinity the slope that it has far out; NaN stays.
-  const auto velocity = [&](Eigen::Index j) { return std::clamp<double>(qd[j], -1e100, 1e100); };
+  const auto velocity = [&](Eigen::Index j) {
+    return std::clamp<double>(motors.v[j], -1e100, 1e100);
+  };
   for (Eigen::Index j = 0; j < n; ++j) {
     const FrictionLaw& law = model.friction[static_cast<std::size_t>(j)];
-    dtau_dqd(j, j) += frictionSlope(law, velocity(j), load.g[j]);
+    const double slope = frictionSlope(law, velocity(j), load.g[j]);
+    if (model.coupling.size() == 0) {
+      dtau_dqd(j, j) += slope;
+      continue;
+    }
+    for (Eigen::Index i = 0; i < n * n; ++i) {
+      const double both = model.coupling(j, i / n) * model.coupling(j, i % n);
+      if (both != 0) dtau_dqd(i / n, i % n) += both * slope;
+    }
   }
   if (!frictionDependsOnLoad(model)) return;
 

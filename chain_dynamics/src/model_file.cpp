@@ -44,10 +44,21 @@ Chain makeChain(const std::string& name, const std::vector<JointEntry>& entries,
   return {name, std::move(joints), std::move(links), gravity, X_EU * X_U_tip};
 }
 
+void addCoupling(const std::vector<JointEntry>& entries, Model& model) {
+  const Eigen::Index n = model.chain.jointCount();
+  Eigen::MatrixXd coupling = Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const std::vector<double>& row = entries[static_cast<std::size_t>(j)].coupling;
+    if (!row.empty()) coupling.row(j) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), n);
+  }
+  if (!coupling.isIdentity(0)) model.coupling = coupling;
+}
+
 /// Everything beyond the chain, in torques.
 void addIdentified(const std::vector<JointEntry>& entries, const Conventions& conventions,
                    Model& model) {
   const bool has_deviation = !entries.front().torque_deviation.empty();
+  addCoupling(entries, model);
   model.drive_gains.resize(conventions.gains ? model.chain.jointCount() : 0);
   model.torque_deviation.resize(has_deviation ? model.chain.jointCount() : 0);
   for (std::size_t j = 0; j < entries.size(); ++j) {

@@ -258,6 +258,7 @@ JointEntry readJoint(const LocatedValue& value, const Conventions& conventions,
   }
   if (const auto friction = map.optional("friction")) {
     entry.friction.push_back(readFriction(friction->map(), conventions.schema));
+    if (const auto coupling = map.optional("coupling")) entry.coupling = coupling->numbers(joints);
   }
   readExperience(map, conventions.schema, entry);
   readParameters(map, conventions, joints, entry);

@@ -40,6 +40,7 @@ struct JointEntry {
   std::vector<LinkParameters> row;                         // in U: n links, or none
   std::vector<Eigen::Vector3d> gravity_first_moment;       // in U: one, or none
   std::vector<FrictionLaw> friction;                       // one, or none
+  std::vector<double> coupling;                            // n, or none: a motor of its own
   std::vector<double> drive_gain;                          // one, or none
   std::vector<double> torque_deviation;                    // one, or none
   std::vector<SeenRange> seen;                             // one, or none

@@ -130,6 +130,9 @@ std::string jointLines(const Model& model, std::size_t j) {
   }
   text += entry("drive_gain", model.drive_gains);
   if (!model.friction.empty()) text += frictionLine(model.friction[j]);
+  if (model.coupling.size() > 0) {
+    text += "    coupling: " + list(model.coupling.row(static_cast<Eigen::Index>(j))) + "\n";
+  }
   text += linkLines(model, j);
   if (!model.gravity_parameters.empty()) {
     text += "    gravity_first_moment: " + list(model.gravity_parameters[j].first_moment) + "\n";

@@ -73,6 +73,15 @@ Model withChangingSteps(Model model, std::uint32_t seed) {
   return model;
 }
 
+/// With motors that move joints before theirs too; changing steps: joints 2 and 3 have no load friction.
+Model withCoupling(Model model) {
+  const Index n = model.chain.jointCount();
+  model.coupling = Eigen::MatrixXd::Identity(n, n);
+  model.coupling(2, 1) = 0.7;
+  if (n > 3) model.coupling.row(3).head(4) << 0.3, 0, -1.2, 0.9;
+  return model;
+}
+
 std::vector<NamedModel> models() {
   std::vector<NamedModel> all;
   for (const Index n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 13, 30, 64}) {
@@ -100,14 +109,17 @@ std::vector<NamedModel> models() {
     all.push_back({"gravity, " + joints, withChangingSteps(gravity, 6)});
   }
   for (const Index n : {2, 5, 8, 13, 64}) {
-    all.push_back({"any axes, " + std::to_string(n) + " joints, changing steps",
-                   withChangingSteps(Model(randomChain(n)), 7)});
+    const std::string name = "any axes, " + std::to_string(n) + " joints";
+    const Model changing = withChangingSteps(Model(randomChain(n)), 7);
+    all.push_back({name + ", changing steps", changing});
+    if (n > 2) all.push_back({name + ", coupled motors", withCoupling(changing)});
   }
   for (const std::string robot : {"ur10", "panda"}) {
     const std::string urdf = textOf(robotFile("urdf/" + robot + ".urdf"));
     const Model model(chainFromUrdf(urdf));
     all.push_back({robot, model});
     all.push_back({robot + ", changing steps", withChangingSteps(model, 8)});
+    all.push_back({robot + ", coupled motors", withCoupling(withChangingSteps(model, 8))});
   }
   for (const std::string name :
        {"ur10_identified", "franka_inria_identified", "franka_gaz2019_feasible"}) {

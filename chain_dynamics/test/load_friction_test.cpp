@@ -8,7 +8,9 @@
 #include <string>
 
 #include "allocation_guard.hpp"
+#include "chain_dynamics/error.hpp"
 #include "chain_dynamics/fast_model.hpp"
+#include "chain_dynamics/model_file.hpp"
 #include "example_models.hpp"
 #include "example_robots.hpp"
 
@@ -64,13 +66,37 @@ TEST(LoadFriction, CountsABodyAtTheTipAndGravity) {
     for (const Model& changed : {loaded, turned}) {
       const VectorXd g = gravityOf(changed, x.q), f = frictionOf(changed, x.q, x.qd);
       EXPECT_NE(f, frictionOf(model, x.q, x.qd)) << name;
-      for (Index j = 0; j < g.size(); ++j) {
+      for (Index j = 0; j < g.size() && model.coupling.size() == 0; ++j) {
         // but for what a compiler contracts in one place and not in another
         EXPECT_DOUBLE_EQ(f[j],
                          friction(model.friction[static_cast<std::size_t>(j)], x.qd[j], g[j]));
       }
     }
   }
+}
+
+// v = (1, 2 - 0.5) rad/s of the motors, whose friction is 3 v + 4: (7, 8.5) N m.
+TEST(CoupledMotors, ByHand) {
+  Model model(revolute(randomChain(2)));
+  model.friction = {ViscousCoulombOffset{3, 4, 0}, ViscousCoulombOffset{3, 4, 0}};
+  model.coupling = Eigen::Matrix2d{{1, 0}, {-0.5, 1}};
+  checkModel(model);
+  const Eigen::Vector2d expected(7 - 0.5 * 8.5, 8.5), qd(1, 2);
+  EXPECT_EQ(frictionOf(model, VectorXd::Zero(2), qd), expected);
+  const Model again = modelFromYaml(modelFileText(model), "written");
+  EXPECT_EQ(again.coupling, model.coupling);
+  EXPECT_EQ(frictionOf(again, VectorXd::Zero(2), qd), expected);
+}
+
+TEST(CoupledMotors, HaveNoLoadFrictionWhereTheyMoveOtherJoints) {
+  Model model(revolute(randomChain(2)));
+  model.friction = {SmoothCoulomb{0, 3, 0.1, 0, 0, 0.2}, SmoothCoulomb{0, 3, 0.1, 0, 0, 0.2}};
+  model.coupling = Eigen::Matrix2d{{1, 0}, {-0.5, 1}};
+  EXPECT_THAT([&] { checkModel(model); },
+              testing::ThrowsMessage<ModelError>(testing::HasSubstr("no load term fl")));
+  model.coupling = Eigen::MatrixXd::Identity(3, 3);
+  EXPECT_THAT([&] { checkModel(model); },
+              testing::ThrowsMessage<ModelError>(testing::HasSubstr("of 2 laws")));
 }
 
 TEST(LoadFriction, NeedsNoPositionsWhereNoLawDependsOnLoad) {
@@ -100,7 +126,7 @@ TEST(LoadFriction, DerivativesAreThoseOfTheTorques) {
     const State<double> x = randomState(model.chain, 3);
     MatrixXd by_q = MatrixXd::Zero(n, n), by_qd = MatrixXd::Zero(n, n);
     addFrictionDerivatives(model, x.q, x.qd, by_q, by_qd);
-    EXPECT_TRUE(by_qd.isDiagonal(0)) << name;
+    EXPECT_EQ(by_qd.isDiagonal(0), model.coupling.size() == 0) << name;
     const auto quotient = [](const auto& f) {
       return VectorXd((f(-2 * kStep) - f(2 * kStep) + 8 * (f(kStep) - f(-kStep))) / (12 * kStep));
     };

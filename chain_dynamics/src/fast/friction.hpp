@@ -3,8 +3,9 @@
 /// @file
 /// Friction torques of all joints, of one state or of a pack of states.
 ///
-/// The heights of the steps are constants of most robots. Where one changes with load or velocity,
-/// all joints are computed by the functions whose names begin with `changing`, which aren't inlined.
+/// The heights of the steps are constants of most robots. Where one changes with load or velocity, or
+/// joints share motors, all joints are computed by the functions with `changing` in their names, which
+/// aren't inlined.
 ///
 /// Included by the kernels' two sources only [pack.hpp].
 
@@ -111,13 +112,38 @@ FAST_INLINE void loadOf(const Robot& robot, int structure, const State<V>& state
   if (robot.load_friction) recursionsOf<V>(structure).gravity(robot, state, g);
 }
 
+/// of(c, motor, joint) for each coefficient c of the coupling that isn't zero: a NaN goes no further.
+template <typename Of>
+FAST_INLINE void forEachCoupling(const Robot& robot, const Of& of) {
+  for (int m = 0; m < robot.joints; ++m) {
+    for (int i = 0; i < robot.joints; ++i) {
+      const double c = robot.coupling[m * robot.joints + i];
+      if (c != 0.0) of(c, m, i);
+    }
+  }
+}
+
+/// Velocities of the motors, in v where they aren't those of the joints.
+template <typename V>
+FAST_INLINE const V* motorVelocities(const Robot& robot, const V* qd, V* v) {
+  if (robot.coupling == nullptr) return qd;
+  for (int m = 0; m < kJointSpace; ++m) v[m] = V{};
+  forEachCoupling(robot, [&](double c, int m, int i) FAST_LAMBDA { v[m] += c * qd[i]; });
+  return v;
+}
+
 template <typename V>
 FAST_APART void changingFriction(const Robot& robot, int structure, const State<V>& state, V* f) {
-  V g[kJointSpace];
+  V g[kJointSpace], v[kJointSpace], of_motors[kJointSpace];
   loadOf(robot, structure, state, g);
-  forEachLaw(robot, state.qd, f, [&](const auto& qd, const auto& law, int joint) FAST_LAMBDA {
-    return frictionOf(qd, heightOf(qd, atJoint(g, joint), law).height, law);
-  });
+  V* const to = robot.coupling == nullptr ? f : of_motors;
+  forEachLaw(robot, motorVelocities(robot, state.qd, v), to,
+             [&](const auto& qd, const auto& law, int joint) FAST_LAMBDA {
+               return frictionOf(qd, heightOf(qd, atJoint(g, joint), law).height, law);
+             });
+  if (robot.coupling == nullptr) return;
+  for (int i = 0; i < robot.joints; ++i) f[i] = V{};
+  forEachCoupling(robot, [&](double c, int m, int i) FAST_LAMBDA { f[i] += c * of_motors[m]; });
 }
 
 /// torques += factor f.
@@ -134,22 +160,32 @@ template <typename V>
 FAST_APART void addChangingFrictionDerivatives(const Robot& robot, int structure,
                                                const State<V>& state,
                                                const DerivativeEntries<V>& to) {
-  V g[kJointSpace];
-  V of_joints[kJointSpace];
+  V g[kJointSpace], v[kJointSpace];
+  V of_motors[kJointSpace];
   loadOf(robot, structure, state, g);
-  forEachLaw(robot, state.qd, of_joints,
+  const V* const velocities = motorVelocities(robot, state.qd, v);
+  forEachLaw(robot, velocities, of_motors,
              [&](const auto& qd, const auto& law, int joint) FAST_LAMBDA {
                const auto changing = heightOf(qd, atJoint(g, joint), law);
                return frictionSlopeOf(qd, changing.height, law) + changing.slope * stepOf(qd, law);
              });
-  for (int i = 0; i < robot.joints; ++i) to.by_qd[i + i * to.outer_step] += of_joints[i];
+  if (robot.coupling == nullptr) {
+    for (int i = 0; i < robot.joints; ++i) to.by_qd[i + i * to.outer_step] += of_motors[i];
+  } else {
+    forEachCoupling(robot, [&](double c, int m, int i) FAST_LAMBDA {
+      for (int j = 0; j < robot.joints; ++j) {
+        const double both = c * robot.coupling[m * robot.joints + j];
+        if (both != 0.0) to.by_qd[i + j * to.outer_step] += both * of_motors[m];
+      }
+    });
+  }
   if (!robot.load_friction) return;
 
-  // df/dq = df/dg dg/dq
-  forEachLaw(robot, state.qd, of_joints,
+  // df/dq = df/dg dg/dq; of motors that joints share, no friction depends on load
+  forEachLaw(robot, velocities, of_motors,
              [&](const auto& qd, const auto& law, int joint)
                  FAST_LAMBDA { return law.fl * signOf(atJoint(g, joint)) * stepOf(qd, law); });
-  addLoadDerivatives<AnyWithMatrices<V>>(robot, state, of_joints, to.by_q, to.outer_step);
+  addLoadDerivatives<AnyWithMatrices<V>>(robot, state, of_motors, to.by_q, to.outer_step);
 }
 
 /// Friction torques of one state; f has room for a pack at the end.

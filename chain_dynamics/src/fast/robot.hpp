@@ -79,11 +79,12 @@ struct Robot {
   const Body* const* rows;      ///< null: none; else joints sets of bodies: row j has set j
   const double* row_lanes;      ///< the same: [joint][number of Body][row]
   const double* friction;       ///< null: none; else [number of FrictionNumbers][joint]
-  bool changing_steps;          ///< a law's step depends on load or (Stribeck) on velocity
-  bool load_friction;           ///< on load
-  int stride;                   ///< joints, and zeros to the end of a pack: rows of the last two
-  FixedPose base;               ///< of the first joint's frame at angle zero, in the root frame
-  FixedPose tip;                ///< of the tip in the last frame
+  const double* coupling;       ///< null: friction is of joints; else of motors: [motor][joint]
+  bool changing_steps;  ///< a step depends on load or (Stribeck) velocity, or there is coupling
+  bool load_friction;   ///< on load
+  int stride;           ///< joints, and zeros to the end of a pack: rows of the last two
+  FixedPose base;       ///< of the first joint's frame at angle zero, in the root frame
+  FixedPose tip;        ///< of the tip in the last frame
 };
 
 /// Numbers of many states: joint j of state k stands at data[j joint_step + k state_step].
