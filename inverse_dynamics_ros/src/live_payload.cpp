@@ -24,11 +24,14 @@ PayloadOptions optionsOf(const LivePayloadOptions& options) {
 LivePayload::LivePayload(
     const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver,
     const LivePayloadOptions& options)
-    : n_(solver->jointCount()),
+    : solver_(solver),
+      n_(solver->jointCount()),
       types_(solver->jointTypes()),
+      without_gravity_(options.without_gravity),
       estimator_(solver, optionsOf(options)),
       filter_(3 * n_, options.cutoff, options.longest_gap),
-      samples_(Eigen::VectorXd::Zero(3 * n_)) {}
+      samples_(Eigen::VectorXd::Zero(3 * n_)),
+      gravity_(Eigen::VectorXd::Zero(n_)) {}
 
 void LivePayload::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
                          const Eigen::VectorXd& effort) {
@@ -39,6 +42,10 @@ void LivePayload::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eig
   }
   samples_.segment(n_, n_) = qd;
   samples_.tail(n_) = effort;
+  if (without_gravity_) {
+    solver_->getGravityVector(q, gravity_);
+    samples_.tail(n_) += gravity_;
+  }
   const OnlineDerivative::Step step = filter_.update(stamp, samples_);
   if (step == OnlineDerivative::Step::kWentBack) estimator_.restart();
   if (step == OnlineDerivative::Step::kRepeated || !filter_.settled()) return;

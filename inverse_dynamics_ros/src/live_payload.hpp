@@ -22,6 +22,7 @@ struct LivePayloadOptions {
   double longest_gap = 0.5;                    ///< s
   Eigen::VectorXd noise;                       ///< n; N m: of efforts and the arm's model
   inverse_dynamics_solver::RigidBody carried;  ///< what the solver carries of the estimate already
+  bool without_gravity = false;                ///< efforts lack what the solver takes for gravity
 };
 
 /// Estimates the body at the tip. Positions, velocities and efforts all pass through the filter of
@@ -37,7 +38,7 @@ class LivePayload {
 
   /// Takes a sample; what isn't finite is left out. A clock that goes back begins again.
   ///
-  /// @param stamp   ns. @param effort  n; N m (prismatic N), with gravity.
+  /// @param stamp   ns. @param effort  n; N m (prismatic N).
   void update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
               const Eigen::VectorXd& effort);
 
@@ -48,11 +49,14 @@ class LivePayload {
   }
 
  private:
+  std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver_;
   Eigen::Index n_;
   std::vector<chain_dynamics::JointType> types_;
+  bool without_gravity_;
   inverse_dynamics_identification::PayloadEstimator estimator_;
   inverse_dynamics_evaluation::OnlineDerivative filter_;  // of q, qd, effort
   Eigen::VectorXd samples_;                               // 3 n
+  Eigen::VectorXd gravity_;                               // n
 };
 
 }  // namespace inverse_dynamics_ros

@@ -77,16 +77,18 @@ LivePayloadOptions LivePayloadServices::options() const {
   options.longest_gap = params_.longest_gap;
   options.noise = perJoint(noise, robot_.solver->jointCount());
   options.carried = carried_();
+  options.without_gravity = robot_.efforts_without_gravity;
+  if (options.without_gravity && options.carried.mass > 0) {
+    throw UserError("estimate_payload", "no payload where efforts lack gravity",
+                    std::to_string(options.carried.mass) + " kg",
+                    "set payload.mass to 0, and remove it from the robot's own settings");
+  }
   return options;
 }
 
 void LivePayloadServices::start(Trigger::Response& response) {
   if (robot_.solver == nullptr) {
     throw UserError("estimate_payload", "a solver", "none yet", "wait for the robot description");
-  }
-  if (robot_.efforts_without_gravity) {
-    throw UserError("estimate_payload", "efforts with gravity", "torque_without_gravity",
-                    "what the load weighs has been taken off: use currents or joint torques");
   }
   payload_ = std::make_unique<LivePayload>(robot_.solver, options());
   response.success = true;

@@ -128,6 +128,18 @@ TEST_F(LivePayloadTest, HoldsWhatIsCarriedAlready) {
   expectTheLoad(found);
 }
 
+TEST_F(LivePayloadTest, EffortsMayLackTheGravityOfTheArm) {
+  LivePayloadOptions with = options();
+  with.without_gravity = true;
+  LivePayload payload(solver, with);
+  for (std::int64_t stamp = 0; stamp < 8'000'000'000; stamp += kPeriod) {
+    moveTo(stamp);
+    payload.update(stamp, q, qd, effort - solver->getGravityVector(q));
+  }
+  ASSERT_EQ(payload.estimate(found), PayloadStatus::kOk);
+  expectTheLoad(found);
+}
+
 TEST_F(LivePayloadTest, WhatCannotBeUsedIsLeftOut) {
   LivePayload payload(solver, options());
   const std::int64_t stamp = run(payload, 4.0);
@@ -161,7 +173,9 @@ TEST_F(LivePayloadTest, AllocatesNothing) {
   if (!inverse_dynamics_solver::conformance::kAllocationGuardWorks) {
     GTEST_SKIP() << "allocations can't be counted here";
   }
-  LivePayload payload(solver, options());
+  LivePayloadOptions without_gravity = options();
+  without_gravity.without_gravity = true;
+  LivePayload payload(solver, without_gravity);
   const std::int64_t stamp = run(payload, 3.0);
   moveTo(stamp);
   const AllocationGuard guard;
