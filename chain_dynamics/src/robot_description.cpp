@@ -24,7 +24,6 @@ namespace {
 
 using tinyxml2::XMLElement;
 using Inertial = RobotDescription::Inertial;
-using Joint = RobotDescription::Joint;
 using Link = RobotDescription::Link;
 using Mimic = RobotDescription::Mimic;
 using Type = RobotDescription::JointType;
@@ -139,7 +138,7 @@ Type jointType(const UrdfElement& element) {
   return found->second;
 }
 
-void readAxis(const UrdfElement& element, Joint& joint) {
+void readAxis(const UrdfElement& element, RobotDescription::Joint& joint) {
   if (const auto axis = element.child("axis")) {
     axis->reportUnknown(kAxis);
     joint.axis = axis->vector("xyz");
@@ -149,7 +148,7 @@ void readAxis(const UrdfElement& element, Joint& joint) {
   }
 }
 
-void readLimits(const UrdfElement& element, Joint& joint) {
+void readLimits(const UrdfElement& element, RobotDescription::Joint& joint) {
   const bool needed = joint.type == Type::kRevolute || joint.type == Type::kPrismatic;
   const auto limit =
       needed ? element.requiredChild("limit", "a joint without limits is of type continuous")
@@ -166,7 +165,7 @@ void readLimits(const UrdfElement& element, Joint& joint) {
   }
 }
 
-void readDynamics(const UrdfElement& element, Joint& joint) {
+void readDynamics(const UrdfElement& element, RobotDescription::Joint& joint) {
   if (const auto dynamics = element.child("dynamics")) {
     dynamics->reportUnknown(kDynamics);
     joint.damping = dynamics->number("damping", 0);
@@ -258,7 +257,7 @@ class Reader {
     for (const XMLElement* const next : childrenOf(root, "joint")) {
       const UrdfElement element = named(*next, joints_);
       element.reportUnknown(kJoint);
-      Joint joint;
+      RobotDescription::Joint joint;
       joint.name = next->Attribute("name");
       joint.line = element.line();
       joint.type = jointType(element);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a controller manager loads, and two arms of one robot under it, each with a controller of its own.
+// What a controller manager loads; two arms under one manager, and under two in namespaces, each with controllers
+// of its own.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,8 +14,10 @@
 #include <future>
 #include <memory>
 #include <rclcpp/executors/single_threaded_executor.hpp>
+#include <sensor_msgs/msg/joint_state.hpp>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace inverse_dynamics_controllers {
@@ -22,6 +25,7 @@ namespace {
 
 using control_msgs::msg::JointTrajectoryControllerState;
 using controller_interface::return_type;
+using sensor_msgs::msg::JointState;
 
 constexpr double kGravity = 9.81;  // m/s^2
 constexpr double kLength = 0.5;    // m
@@ -43,15 +47,21 @@ std::string hardware(const std::string& side, double angle) {
          "<param name='initial_value'>" +
          std::to_string(angle) +
          "</param></state_interface><state_interface name='velocity'><param "
+         "name='initial_value'>0</param></state_interface><state_interface name='effort'><param "
          "name='initial_value'>0</param></state_interface></joint>";
 }
 
-std::string robot() {
-  return "<robot name='two'><link name='base'/>" + pendulum("left", 2.0) + pendulum("right", 4.0) +
+std::string robot(const std::string& arms, const std::string& interfaces) {
+  return "<robot name='arms'><link name='base'/>" + arms +
          "<ros2_control name='arms' type='system'><hardware><plugin>mock_components/GenericSystem"
          "</plugin></hardware>" +
-         hardware("left", 0.5) + hardware("right", -1.0) + "</ros2_control></robot>";
+         interfaces + "</ros2_control></robot>";
 }
+
+// The effort that carries a pendulum.
+double weight(double mass, double angle) { return mass * kGravity * kLength * std::sin(angle); }
+
+constexpr const char* kDamping = "    damping: {values: [1.0]}\n";
 
 class TwoArms : public testing::Test {
  protected:
@@ -59,7 +69,8 @@ class TwoArms : public testing::Test {
   static void TearDownTestSuite() { rclcpp::shutdown(); }
 
   void SetUp() override {
-    executor_->add_node(manager_);
+    add(robot(pendulum("left", 2.0) + pendulum("right", 4.0),
+              hardware("left", 0.5) + hardware("right", -1.0)));
     executor_->add_node(listener_);
   }
   void TearDown() override { std::filesystem::remove(file_); }
@@ -68,28 +79,37 @@ class TwoArms : public testing::Test {
     return "inverse_dynamics_controllers/" + controller;
   }
 
+  // Another controller manager, which is meant from now on.
+  void add(const std::string& robot, const std::string& name_space = "") {
+    manager_ = std::make_shared<controller_manager::ControllerManager>(executor_, robot, true,
+                                                                       "manager", name_space);
+    managers_.push_back(manager_);
+    executor_->add_node(manager_);
+  }
+
   // Loads a controller with parameters of its own.
-  return_type configure(const std::string& side, const std::string& more = "") {
+  return_type configure(const std::string& arm, const std::string& more = kDamping,
+                        const std::string& name = "",
+                        const std::string& controller = "GravityCompensationController") {
     std::ofstream(file_)
-        << "/**/" << side << ":\n  ros__parameters:\n"
+        << "/**/" << arm << name << ":\n  ros__parameters:\n"
         << "    plugin_name: kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL\n"
-        << "    ids: {root: base, tip: " << side << "_rod}\n"
-        << "    damping: {values: [1.0]}\n"
+        << "    ids: {root: base, tip: " << arm << "_rod}\n"
         << more;
-    manager_->set_parameter({side + ".params_file", file_.string()});
-    if (!manager_->load_controller(side, type("GravityCompensationController"))) {
-      return return_type::ERROR;
-    }
-    return manager_->configure_controller(side);
+    manager_->set_parameter({arm + name + ".params_file", file_.string()});
+    if (!manager_->load_controller(arm + name, type(controller))) return return_type::ERROR;
+    return manager_->configure_controller(arm + name);
   }
 
   // One cycle of the control loop.
   void cycle() {
-    const rclcpp::Time now = manager_->get_clock()->now();
-    const auto period = rclcpp::Duration::from_seconds(0.01);
-    manager_->read(now, period);
-    manager_->update(now, period);
-    manager_->write(now, period);
+    for (const auto& manager : managers_) {
+      const rclcpp::Time now = manager->get_clock()->now();
+      const auto period = rclcpp::Duration::from_seconds(0.01);
+      manager->read(now, period);
+      manager->update(now, period);
+      manager->write(now, period);
+    }
     executor_->spin_some();
   }
 
@@ -103,18 +123,27 @@ class TwoArms : public testing::Test {
     return done.get();
   }
 
-  // The effort that a controller says it commands, of its first joint; NaN: it says nothing.
-  double effort(const std::string& side) {
-    double effort = NAN;
-    const auto subscription = listener_->create_subscription<JointTrajectoryControllerState>(
-        "/" + side + "/controller_state", 1,
-        [&](const JointTrajectoryControllerState& state) { effort = state.output.effort.at(0); });
+  // Whether a topic says this number, at last.
+  template <class Message>
+  void expect(double number, const std::string& topic, double (*said)(const Message&)) {
+    double last = NAN;
+    const auto subscription = listener_->create_subscription<Message>(
+        topic, 1, [&](const Message& message) { last = said(message); });
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-    while (std::isnan(effort) && std::chrono::steady_clock::now() < end) {
+    while (!(std::abs(last - number) < 1e-4) && std::chrono::steady_clock::now() < end) {
       cycle();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    return effort;
+    EXPECT_NEAR(last, number, 1e-4) << topic;
+  }
+  void expectEffort(double effort, const std::string& controller) {
+    expect<JointTrajectoryControllerState>(
+        effort, controller + "/controller_state",
+        [](const JointTrajectoryControllerState& state) { return state.output.effort.at(0); });
+  }
+  void expectExternal(double torque, const std::string& broadcaster) {
+    expect<JointState>(torque, broadcaster + "/external_torques",
+                       [](const JointState& state) { return state.effort.at(0); });
   }
 
   const std::filesystem::path file_ =
@@ -122,8 +151,8 @@ class TwoArms : public testing::Test {
   const std::shared_ptr<rclcpp::Executor> executor_ =
       std::make_shared<rclcpp::executors::SingleThreadedExecutor>();
   const std::shared_ptr<rclcpp::Node> listener_ = std::make_shared<rclcpp::Node>("listener");
-  const std::shared_ptr<controller_manager::ControllerManager> manager_ =
-      std::make_shared<controller_manager::ControllerManager>(executor_, robot(), true, "manager");
+  std::vector<std::shared_ptr<controller_manager::ControllerManager>> managers_;
+  std::shared_ptr<controller_manager::ControllerManager> manager_;  // the last
 };
 
 class Load : public TwoArms, public testing::WithParamInterface<const char*> {};
@@ -142,12 +171,30 @@ TEST_F(TwoArms, EachControllerServesItsOwn) {
   ASSERT_EQ(configure("left"), return_type::OK);
   ASSERT_EQ(configure("right"), return_type::OK);
   ASSERT_EQ(activate({"left", "right"}), return_type::OK);
-  EXPECT_NEAR(effort("left"), 2.0 * kGravity * kLength * std::sin(0.5), 1e-6);
-  EXPECT_NEAR(effort("right"), 4.0 * kGravity * kLength * std::sin(-1.0), 1e-6);
+  expectEffort(weight(2.0, 0.5), "/left");
+  expectEffort(weight(4.0, -1.0), "/right");
+}
+
+// Joints and controllers have the same names in both. Broadcasters expect a load that isn't there.
+TEST_F(TwoArms, ControllersAndBroadcastersOfANamespaceServeItsOwn) {
+  for (const auto& [side, mass] : {std::pair("left", 3.0), {"right", 5.0}}) {
+    add(robot(pendulum("arm", mass), hardware("arm", 0.5)), side);
+    ASSERT_EQ(configure("arm"), return_type::OK);
+    const std::string load =
+        "    payload: {mass: " + std::to_string(mass) + ", center_of_mass: [0.0, 0.0, -0.5]}\n";
+    ASSERT_EQ(configure("arm", "    noise: [1.0]\n" + load, "_touch", "ExternalWrenchBroadcaster"),
+              return_type::OK);
+    ASSERT_EQ(activate({"arm", "arm_touch"}), return_type::OK);
+  }
+  expectEffort(weight(3.0, 0.5), "/left/arm");
+  expectEffort(weight(5.0, 0.5), "/right/arm");
+  expectExternal(-weight(3.0, 0.5), "/left/arm_touch");
+  expectExternal(-weight(5.0, 0.5), "/right/arm_touch");
 }
 
 TEST_F(TwoArms, AMisspeltLimitIsRefusedByTheManager) {
-  EXPECT_EQ(configure("left", "    limits: {effrot: [1.0]}\n"), return_type::ERROR);
+  EXPECT_EQ(configure("left", std::string(kDamping) + "    limits: {effrot: [1.0]}\n"),
+            return_type::ERROR);
 }
 
 TEST_F(TwoArms, AMisspeltLimitIsRefusedByTheParameterService) {
