@@ -40,7 +40,7 @@ _APART = 10.0  # s between blocks: many correlation times
 _GREATEST = 0.995  # quantile that is taken for the greatest torque
 _USUAL_RANGE, _MOST_RANGE = 3.0, 7.0  # greatest torques
 _MOVES = 0.05  # of the greatest velocity
-_USUAL_COUNTS = 2  # recordings
+USUAL_COUNTS = 2  # recordings
 
 
 def factor_of(
@@ -123,7 +123,7 @@ def with_levels(band: TorqueBand, levels: Sequence[Level]) -> TorqueBand:
 
     def level(usual: Floats, found: Sequence[Floats]) -> Floats:
         squares = (1 - 1 / max(count, 1) ** 2) * np.square(found).sum(axis=0)
-        return np.asarray(np.sqrt((_USUAL_COUNTS * usual**2 + squares) / (_USUAL_COUNTS + count)))
+        return np.asarray(np.sqrt((USUAL_COUNTS * usual**2 + squares) / (USUAL_COUNTS + count)))
 
     return replace(
         band,

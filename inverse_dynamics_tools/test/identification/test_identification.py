@@ -23,6 +23,7 @@ from inverse_dynamics.identification.cross_validation import choose, errors_of
 from inverse_dynamics.identification.knowledge import independent_samples, intervals, knowledge
 from inverse_dynamics.identification.result import COLUMNS, LAWS, IdentificationError
 from inverse_dynamics.identification.summary import delay_told
+from inverse_dynamics.identification.temperature import at_temperature
 from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.robot.descriptions import read_description
 
@@ -460,6 +461,21 @@ def test_a_level_of_each_recording_is_found(identified_on):
     for difference, offset in zip(differences, offsets[1:], strict=True):
         # each is held against the mean of the others, so differences are 1.5 times as large
         np.testing.assert_allclose(difference / 1.5, offset - offsets[0], atol=0.1)
+
+
+def test_friction_follows_the_temperature(identified_on, tmp_path):
+    found, _ = identified_on(0.8, 1.0, 1.2, 1.0)
+    warm = at_temperature(found, [40.0, 30.0, 20.0], 45.0)  # 2 % less a degree
+    for law, new in zip(found.model.friction, warm.model.friction, strict=True):
+        assert new["fc"] / law["fc"] == pytest.approx(0.7, abs=0.04)
+        assert new["fv"] / law["fv"] == pytest.approx(new["fc"] / law["fc"])
+        assert new["width"] == law["width"]
+    assert (warm.band.share < SHARE).all()
+    file = write_identification(warm, tmp_path / "arm.yaml").robot
+    assert evaluate(found.recordings[0], file).band is not None
+    for temperatures in ([40.0, 30.0], [30.0, 30.0, 30.0]):
+        with pytest.raises(IdentificationError, match="expected different ones of 3 or more"):
+            at_temperature(found, temperatures, 45.0)
 
 
 def blocks_of_arrays(q, qd, qdd, tau):

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Friction that changes with the temperature of the joints: `f(T) = f(T0) (1 + k (T - T0))`.
+
+found = identify(["cold", "mild", "warm"], "my_arm.yaml")
+write_identification(at_temperature(found, [20, 28, 35], 31), "arm_31.yaml")
+
+k is the slope of the levels of the recordings [result.Level], T0 their mean temperature. Any number of a recording
+will do, as the minutes since the robot was switched on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics import _core
+from inverse_dynamics.evaluation.bands import SHARE
+from inverse_dynamics.identification.result import IdentificationError
+from inverse_dynamics.identification.uncertainty import USUAL_COUNTS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.identification.result import Identification
+
+_TORQUES = ("fv", "fc", "fl", "fs")  # of smooth_coulomb
+_FEWEST = 3  # recordings: two always lie on a line
+
+
+def at_temperature(
+    found: Identification,
+    temperatures: Sequence[float] | Floats,
+    temperature: float | Floats,
+) -> Identification:
+    """Model and band with the friction of a temperature: of all joints, or (n,).
+
+    temperatures: of each recording, (R,) or (R, n).
+
+    Raises IdentificationError: fewer than three recordings, or the same temperature in all.
+    """
+    count, n = len(found.levels), len(found.joints)
+    T = np.array(temperatures, dtype=float).reshape(len(temperatures), -1) * np.ones(n)
+    if count < _FEWEST or len(T) != count or (np.ptp(T, axis=0) == 0).any():
+        raise IdentificationError(
+            f"temperatures: expected different ones of {_FEWEST} or more recordings that are identified together, "
+            f"got {np.array(temperatures).tolist()} of {count} recordings"
+        )
+    share = np.array([level.share for level in found.levels])
+    factors = count * (1 + share) / (count + share)  # a level is held against the other recordings
+    warmer = T - T.mean(axis=0)
+    k = (warmer * (factors - 1)).sum(axis=0) / (warmer**2).sum(axis=0)
+    left = ((factors - 1 - k * warmer) ** 2).sum(axis=0)
+    factor = 1 + k * (np.asarray(temperature) - T.mean(axis=0))
+    friction = tuple(
+        {key: float(value * scale) if key in _TORQUES else value for key, value in law.items()}
+        for law, scale in zip(found.model.friction, factor, strict=True)
+    )
+    return replace(
+        found,
+        model=replace(found.model, friction=friction),
+        band=replace(
+            found.band,
+            arm=_core.ArmUncertainty(friction, found.factor),
+            friction=friction,
+            share=np.sqrt((USUAL_COUNTS * SHARE**2 + left) / (USUAL_COUNTS + count)),
+        ),
+    )
