@@ -77,9 +77,8 @@ class Arm:
     options: Mapping[str, Any] = field(default_factory=dict)
 
 
-def ur10e(clones: Path, _: Path) -> Arm:
+def ur10e(clone: Path, _: Path) -> Arm:
     """Motor currents at 100 Hz, of several days; gains of the controller: its target torques by currents."""
-    clone = clones / "dynamic_calibration"
     data = clone / "dataset_ur10e"
     recordings = {
         "12 Feb": data / "identification_data/ur-20_02_12-40sec_12harm.csv",
@@ -105,9 +104,8 @@ def ur10e(clones: Path, _: Path) -> Arm:
     )
 
 
-def kr300(clones: Path, scratch: Path) -> Arm:
+def kr300(clone: Path, scratch: Path) -> Arm:
     """Torques of the first three motors at 250 Hz; z of the published parameters points down."""
-    clone = clones / "Robot_Identification"
     description = scratch / "kr300.yaml"
     description.write_text(KR300_TABLE)
     recorded = clone / "data/recorded_trajectories"
@@ -129,9 +127,8 @@ def kr300(clones: Path, scratch: Path) -> Arm:
     )
 
 
-def pandas(clones: Path, scratch: Path) -> Arm:
+def pandas(clone: Path, scratch: Path) -> Arm:
     """Two robots. Of the other one, numbers a line."""
-    clone = clones / "FrankaEmikaPandaDynModel"
     log = clone / "matlab/data/Exciting_Traj/Trajectory_1/rbt_log"
     time, *states = (
         np.loadtxt(log / f"exciting_traj_{name}.txt")
@@ -276,23 +273,28 @@ def _mean(errors: Floats) -> Floats:
     return np.asarray(np.sqrt((errors**2).mean(axis=-2)).mean(axis=-1))
 
 
+ARMS = {  # by clone
+    "dynamic_calibration": ur10e,
+    "Robot_Identification": kr300,
+    "FrankaEmikaPandaDynModel": pandas,
+}
+
+
 def main() -> None:
     """Command line."""
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
     clones = Path(sys.argv[1])
+    missing = [clone for clone in ARMS if not (clones / clone).is_dir()]
     rows: list[tuple[str, ...]] = []
-    missing = []
     with TemporaryDirectory() as directory:
-        scratch = Path(directory)
-        for make in (ur10e, kr300, pandas):
-            try:
-                rows += rows_of(make(clones, scratch), scratch)
-            except FileNotFoundError as error:
-                missing.append(f"{error}")
-    text = table(HEADINGS, rows)
+        for clone, arm_of in ARMS.items():
+            if clone not in missing:
+                rows += rows_of(arm_of(clones / clone, Path(directory)), Path(directory))
     if missing:
-        print(text, *missing, "clone what is missing; nothing was replaced", sep="\n")
-        return
-    show(text, "identification_results.md", "transfer_study")
+        print(table(HEADINGS, rows))
+        sys.exit(f"{clones}: expected clones of {', '.join(missing)}, too; nothing was replaced")
+    show(table(HEADINGS, rows), "identification_results.md", "transfer_study")
 
 
 if __name__ == "__main__":
