@@ -162,9 +162,9 @@ def test_joints_that_never_leave_the_step_of_friction_have_a_noise():
 
 
 def test_offsets_of_another_day_are_a_share_of_the_range_of_efforts():
-    """The limit; three times the greatest torque where there is none, and at most seven times."""
-    level = usual_level(np.full(3, 20.0), np.array([87.0, np.inf, 1e4]))
-    np.testing.assert_allclose(level, bands.LEVEL * np.array([87.0, 60.0, 140.0]))
+    """The limit; three times the greatest torque where there is none or it is passed, and at most seven times."""
+    level = usual_level(np.full(4, 20.0), np.array([87.0, np.inf, 10.0, 1e4]))
+    np.testing.assert_allclose(level, bands.LEVEL * np.array([87.0, 60.0, 60.0, 140.0]))
 
 
 def test_the_band_of_a_recording_is_made_in_parts(model, monkeypatch):

@@ -86,8 +86,9 @@ def band_of(
 
 
 def usual_level(greatest: Floats, limits: Floats) -> Floats:
-    """(n,) of offsets. Some descriptions state limits that no motor has."""
-    usual = np.where(np.isfinite(limits), limits, _USUAL_RANGE * greatest)
+    """(n,) of offsets. Some descriptions state limits that no motor has, or that are passed."""
+    stated = np.isfinite(limits) & (limits >= greatest)
+    usual = np.where(stated, limits, _USUAL_RANGE * greatest)
     return np.asarray(LEVEL * np.minimum(usual, _MOST_RANGE * greatest))
 
 
