@@ -49,7 +49,7 @@ HEADINGS = (
     "least squares",
     "law found",
     "identified",
-    *("moving: least squares", "law found", "identified", "test itself"),
+    *("moving: least squares", "identified", "test itself"),
     *("in band", "worst", "width"),
 )
 SQUARES = ("ordinary", "weighted", "consistent")
@@ -238,7 +238,8 @@ def rows_of(arm: Arm, scratch: Path) -> list[tuple[str, ...]]:
             kept = e.samples.kept
             errors = (e.measured - e.computed)[kept]
             cells = _cells((plain, same), errors, own, test.moves, e.band[kept])
-            rows.append((f"{arm.name}, {' and '.join(fitted)}", label, *cells))
+            name = f"{arm.name}, {' and '.join(fitted)}" if label == tested[0] else ""
+            rows.append((name, label, *cells))
     return rows
 
 
@@ -251,21 +252,21 @@ def _cells(
 ) -> list[str]:
     """Of a row. squares: errors of least squares with both laws; own: of a fit to the test itself."""
     means = [_mean(np.stack(list(of.values()))) for of in squares]
-    moving = [_mean(np.stack(list(of.values()))[:, moves]).min() for of in squares]
+    least = min(float(_mean(e[moves])) for of in squares for e in of.values())
     inside = (np.abs(errors) <= half).mean(axis=0)
     width = half.mean() / np.quantile(np.abs(errors), 0.95, axis=0).mean()
     return [
-        *(" ".join(map(_text, of)) for of in means),
-        _text(_mean(errors)),
-        *map(_text, (*moving, _mean(errors[moves]), _mean(own[moves]))),
+        *(" ".join(map(_text, of.tolist())) for of in means),
+        _text(float(_mean(errors))),
+        *map(_text, (least, float(_mean(errors[moves])), float(_mean(own[moves])))),
         *(f"{100 * share:.0f} %" for share in (inside.mean(), inside.min())),
         f"{width:.2f}",
     ]
 
 
-def _text(error: Floats) -> str:
+def _text(error: float) -> str:
     """Three digits."""
-    return f"{float(error):#.3g}".rstrip(".")
+    return f"{error:#.3g}".rstrip(".")
 
 
 def _mean(errors: Floats) -> Floats:
