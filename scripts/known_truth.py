@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics import _core, evaluate, load_robot
-from inverse_dynamics.identification.blocks import blocks_of, moving
+from inverse_dynamics.identification.blocks import blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of
 from inverse_dynamics.identification.identify import BLOCKS
 from inverse_dynamics.identification.knowledge import (
@@ -144,7 +144,7 @@ class Truth:
         )
 
     def _inside(self, fitter: _core.ArmFitter, chosen: Chosen, blocks: Sequence[Block]) -> Mask:
-        later = [block.later(chosen.delay) for block in moving(blocks)]
+        later = [block.later(chosen.delay) for block in blocks]
         errors = [errors_of(fitter, chosen.fit, block) for block in later]
         known = knowledge(
             fitter,

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics import Solver, _core, evaluate
-from inverse_dynamics.identification.blocks import blocks_outside, moving, together
+from inverse_dynamics.identification.blocks import blocks_outside, together
 from inverse_dynamics.identification.cross_validation import choose
 from inverse_dynamics.identification.knowledge import knowledge
 from inverse_dynamics.identification.payload import Samples, fit_payload, samples_of, with_load
@@ -115,7 +115,7 @@ def _model(
     if nested:
         chosen = choose(fitter, rest)
         law, strength, delay, fit = chosen.law, chosen.prior_strength, chosen.delay, chosen.fit
-    later = [block.later(delay) for block in moving(rest)]
+    later = [block.later(delay) for block in rest]
     if not nested:
         options = _core.ArmFitOptions(law, prior_strength=strength)
         fit = fitter.fit(fitter.data(together(later)), options)
