@@ -337,10 +337,26 @@ std::vector<LinkParameters> linksOf(const std::vector<LinkPrior>& priors) {
 
 }  // namespace
 
-ArmFitter::ArmFitter(const Chain& description, const LinkFloor& floor)
+ArmFitter::ArmFitter(const Chain& description, const LinkFloor& floor, const OwnedMatrix& coupling)
     : chain_(description),
+      coupling_(coupling),
       prior_(priorsOf(description, floor)),
-      fast_(Model(withoutMotors(description, linksOf(prior_)))) {}
+      fast_(Model(withoutMotors(description, linksOf(prior_)))) {
+  const Index n = chain_.jointCount();
+  if (coupling.size() == 0 ||
+      (coupling.rows() == n && coupling.cols() == n && coupling.allFinite() &&
+       coupling.isLowerTriangular(0) && coupling.diagonal().isOnes(0))) {
+    return;
+  }
+  throw ModelError("ArmFitter: coupling", "",
+                   std::to_string(n) + " rows, lower triangular with ones on the diagonal",
+                   "others",
+                   "order joints from root to tip; motors may turn with joints before theirs");
+}
+
+bool ArmFitter::isCoupled(Index j) const {
+  return coupling_.size() > 0 && (coupling_.row(j).array() != 0).count() > 1;
+}
 
 void ArmFitter::check(const ArmFit& fit) const {
   const Index joints = chain_.jointCount();
@@ -369,7 +385,11 @@ ArmFit ArmFitter::fit(const ArmData& data, const ArmFitOptions& options,
   }
   if (links.samples() == 0) throw ModelError("ArmFitter: expected samples, got none");
   const auto gram_at = [&](const ArmFit& fit) { return gramOf(fit, options.terms, blocks, links); };
-  return Rounds(prior_, greatest, options).run(start, gram_at);
+  ArmFit found = Rounds(prior_, greatest, options).run(start, gram_at);
+  for (Index j = 0; j < chain_.jointCount(); ++j) {
+    if (isCoupled(j)) found.friction[static_cast<std::size_t>(j)].fl = 0;
+  }
+  return found;
 }
 
 ArmInformation ArmFitter::information(const ArmFit& fit, const ArmData& data,

@@ -75,8 +75,9 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
       for (Index j = 0; j < n; ++j) {
         WhitenedRows& joint = joints[static_cast<std::size_t>(j)];
         joint.row.head(links) = Y.row(j);
-        ownColumnsAt(fit.friction[static_cast<std::size_t>(j)], qd[j], qdd[j], std::abs(gravity[j]),
-                     joint.row.tail(own));
+        const double velocity = coupling_.size() > 0 ? coupling_.row(j).dot(qd) : qd[j];
+        ownColumnsAt(fit.friction[static_cast<std::size_t>(j)], velocity, qdd[j],
+                     isCoupled(j) ? 0.0 : std::abs(gravity[j]), joint.row.tail(own));
         joint.add(k > 0 ? block.time[k] - block.time[k - 1] : 0.0);
       }
     }

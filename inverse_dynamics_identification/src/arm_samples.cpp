@@ -49,8 +49,9 @@ void checkSamples(Index joints, const ArmSamples& block) {
 /// Own columns and torques of a few samples at a fit.
 class Batch {
  public:
-  Batch(const ArmFit& fit, FrictionTerms terms)
+  Batch(const ArmFit& fit, FrictionTerms terms, const OwnedMatrix& coupling)
       : fit_(fit),
+        coupling_(coupling),
         has_gains_(fit.drive_gains.size() > 0),
         columns_(ownColumns(terms)),
         gravity_(fit.rotor_inertia.size(), kBatch),
@@ -72,14 +73,21 @@ class Batch {
     for (Index j = 0; j < q.joints; ++j) {
       const StepFriction& law = fit_.friction[static_cast<std::size_t>(j)];
       const auto part = [&](auto& of) { return of.row(j).head(size).array(); };
-      const Values load = part(gravity_).abs();
-      const Values velocity = valuesOf(qd, j), acceleration = valuesOf(qdd, j);
+      Values load = part(gravity_).abs();
+      Values velocity = valuesOf(qd, j);
+      const Values acceleration = valuesOf(qdd, j);
+      for (Index i = 0; i < j && coupling_.size() > 0; ++i) {
+        if (coupling_(j, i) == 0) continue;
+        velocity += coupling_(j, i) * valuesOf(qd, i);
+        load.setZero();
+      }
       frictionColumns(law, velocity, acceleration, load, columns_,
                       [&](Index c) { return part(own_[static_cast<std::size_t>(c)]); });
       part(tau_) = (has_gains_ ? fit_.drive_gains[j] : 1.0) * valuesOf(samples.tau, j);
       if (carries) part(tau_) -= part(loaded_) - part(alone_);
       if (has_gains_) part(own_.back()) = -part(loaded_) - linearPart(j, size);
     }
+    subtractCoupled(size);
     samples.tau = tau_.leftCols(size);
     for (const Rows& column : own_) samples.own_columns.emplace_back(column.leftCols(size));
     samples.links = false;
@@ -96,12 +104,25 @@ class Batch {
     return values;
   }
 
+  /// Takes friction of later motors off the torques of the joints that turn them.
+  void subtractCoupled(Index size) {
+    for (Index j = 0; j < coupling_.rows(); ++j) {
+      for (Index i = 0; i < j; ++i) {
+        if (coupling_(j, i) == 0) continue;
+        tau_.row(i).head(size).array() -= coupling_(j, i) * linearPart(j, size, 0.0);
+      }
+    }
+  }
+
   /// Torques of rotor and friction of a joint, from its columns.
   Values linearPart(Index j, Index size) const {
+    return linearPart(j, size, fit_.rotor_inertia[j]);
+  }
+  Values linearPart(Index j, Index size, double rotor_inertia) const {
     const auto column = [&](Index c) {
       return own_[static_cast<std::size_t>(c)].row(j).head(size).array();
     };
-    Values sum = fit_.rotor_inertia[j] * column(own_column::kAcceleration);
+    Values sum = rotor_inertia * column(own_column::kAcceleration);
     for (const auto& [c, coefficient] : kLinear) {
       if (c < columns_) sum += fit_.friction[static_cast<std::size_t>(j)].*coefficient * column(c);
     }
@@ -109,6 +130,7 @@ class Batch {
   }
 
   const ArmFit& fit_;
+  const OwnedMatrix& coupling_;
   bool has_gains_;
   Index columns_;
   Rows gravity_, tau_, loaded_, alone_;  // of each joint
@@ -161,7 +183,7 @@ RegressorGram ArmFitter::gramOf(const ArmFit& fit, FrictionTerms terms,
                                 const RegressorGram& links) const {
   RegressorGram gram(chain_.jointCount(), ownColumns(terms) + (fit.drive_gains.size() > 0 ? 1 : 0));
   const FastModel alone(Model(withLinks(fit.parameters, nullptr)), fast_);
-  Batch batch(fit, terms);
+  Batch batch(fit, terms, coupling_);
   for (const ArmData::Block* block : blocks) {
     const ArmSamples& samples = block->samples;
     std::optional<FastModel> loaded;
@@ -183,6 +205,7 @@ Model ArmFitter::model(const ArmFit& fit) const {
   check(fit);
   Model model(withLinks(fit.parameters, &fit.rotor_inertia));
   model.friction.assign(fit.friction.begin(), fit.friction.end());
+  model.coupling = coupling_;
   return model;
 }
 

@@ -83,6 +83,43 @@ TEST(ArmFitter, FindsAKnownRobotWithItsFriction) {
   }
 }
 
+/// Of an arm whose last motor turns with the joint before.
+Motion coupledMotion(const Model& arm, unsigned seed) {
+  Motion motion = randomMotion(arm.chain, 4000, seed);
+  Eigen::MatrixXd f(motion.tau);
+  FastModel(arm).frictionVectorBatch(motion.q, motion.qd, f);
+  motion.tau += f + noise(3, 4000, kNoise, seed + 1);
+  return motion;
+}
+
+TEST(ArmFitter, FindsFrictionOfCoupledMotors) {
+  Model arm(threeJointArm());
+  arm.coupling = Eigen::Matrix3d{{1, 0, 0}, {0, 1, 0}, {0, -0.8, 1}};
+  for (StepFriction law : knownFriction(FrictionTerms::kStep)) {
+    law.shift = 0;
+    arm.friction.emplace_back(law);
+  }
+  const Motion motion = coupledMotion(arm, 1), other = coupledMotion(arm, 9);
+  const ArmFitter fitter(threeJointArm(0.6), {}, arm.coupling), uncoupled(threeJointArm(0.6));
+  for (const FrictionTerms terms : {FrictionTerms::kStep, FrictionTerms::kLoad}) {
+    ArmFitOptions options;
+    options.terms = terms;
+    options.prior_strength = 1;
+    const ArmFit fit = fitter.fit({samplesOf(motion)}, options);
+    EXPECT_LT(errorOf(fitter, fit, other), 1.1 * kNoise);
+    EXPECT_GT(errorOf(uncoupled, uncoupled.fit({samplesOf(motion)}, options), other), 3 * kNoise);
+    for (std::size_t j = 1; j < 3; ++j) {
+      const auto& law = std::get<StepFriction>(arm.friction[j]);
+      EXPECT_NEAR(fit.friction[j].fv, law.fv, 0.05 * law.fv) << j;
+      EXPECT_NEAR(fit.friction[j].fc, law.fc, 0.05 * law.fc) << j;
+    }
+    EXPECT_EQ(fitter.model(fit).coupling, arm.coupling);
+    checkModel(fitter.model(fit));
+  }
+  const Eigen::Matrix3d upper = Eigen::Matrix3d(arm.coupling).transpose();
+  EXPECT_THROW(ArmFitter(threeJointArm(), {}, upper), chain_dynamics::ModelError);
+}
+
 TEST(ArmFitter, TorquesAreThoseOfItsModel) {
   const ArmFitter fitter(threeJointArm(0.6));
   for (const FrictionTerms terms :

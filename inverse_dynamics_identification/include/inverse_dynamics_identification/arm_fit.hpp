@@ -120,10 +120,15 @@ struct ArmInformation {
 class ArmFitter {
  public:
   /// @param description  its links are the prior, once linkPrior() has seen to them.
-  /// @throws chain_dynamics::ModelError  more than 64 joints.
-  explicit ArmFitter(const chain_dynamics::Chain& description, const LinkFloor& floor = {});
+  /// @param coupling     of motors, as chain_dynamics::Model::coupling, lower triangular with ones on its
+  ///     diagonal: a joint's own friction is fitted to its torque less that of later motors. Motors that
+  ///     other joints turn too have no load friction. Empty: each joint has its own motor.
+  /// @throws chain_dynamics::ModelError  more than 64 joints, another coupling.
+  explicit ArmFitter(const chain_dynamics::Chain& description, const LinkFloor& floor = {},
+                     const OwnedMatrix& coupling = {});
 
   const chain_dynamics::Chain& description() const { return chain_; }
+  const OwnedMatrix& coupling() const { return coupling_; }
   /// What was made of the links, and why.
   const std::vector<LinkPrior>& prior() const { return prior_; }
 
@@ -175,7 +180,11 @@ class ArmFitter {
   Gram gramOf(const ArmFit& fit, FrictionTerms terms,
               const std::vector<const ArmData::Block*>& blocks, const Gram& links) const;
 
+  /// Whether other joints turn the motor of joint j.
+  bool isCoupled(Eigen::Index j) const;
+
   chain_dynamics::Chain chain_;
+  OwnedMatrix coupling_;
   std::vector<LinkPrior> prior_;
   chain_dynamics::FastModel fast_;
 };

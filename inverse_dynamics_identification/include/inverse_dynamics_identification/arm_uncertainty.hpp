@@ -9,6 +9,7 @@
 ///
 /// The unknowns of a fit are those of ArmInformation [arm_fit.hpp]. Their covariance is `factor factor'`,
 /// so torques near the model are those of the model plus `W factor z`, W their derivatives by the unknowns.
+/// Friction of coupled motors deviates as if they turned with their joints.
 
 #pragma once
 
