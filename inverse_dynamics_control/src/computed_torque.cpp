@@ -60,6 +60,7 @@ Status ComputedTorque::update(const JointState& state, const Reference& referenc
                     gains_.Kd.cwiseProduct(reference.qd - state.qd);
     model().torques(state.q, state.qd, acceleration_, desired);
     addFriction(state.q, state.qd, reference.qd, desired);
+    addLostDamping(state.qd, reference.qd, desired);
   });
 }
 

@@ -62,6 +62,14 @@ void ControlLaw::addFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
   tau += f_;
 }
 
+void ControlLaw::addLostDamping(const ConstVectorRef& qd, const ConstVectorRef& qd_reference,
+                                VectorRef tau) const {
+  if (friction_.source() != FrictionSource::kReferenceVelocity) return;
+  for (Eigen::Index j = 0; j < tau.size(); ++j) {
+    tau[j] += model_.lostDamping(j) * (qd_reference[j] - qd[j]);
+  }
+}
+
 Status ControlLaw::refuse(Status why, const JointState& state, double period,
                           VectorRef tau) noexcept {
   const Eigen::Index n = jointCount();

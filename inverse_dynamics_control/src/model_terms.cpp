@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/model_terms.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "option_checks.hpp"
@@ -22,6 +23,9 @@ OwnedVector left(const Shares& shares, const std::string& where,
   each = 1.0 - each.array();
   return each;
 }
+
+/// `share f`, and no NaN where nothing is left of infinite friction.
+double part(double share, double f) { return share == 0 && std::isinf(f) ? 0.0 : share * f; }
 
 }  // namespace
 
@@ -76,8 +80,14 @@ void ModelTerms::friction(const ConstVectorRef& q, const ConstVectorRef& v, Vect
   if (friction_.isZero(0) && viscous_.isZero(0)) return;
   solver_->getFrictionVector(q, v, f);
   for (Eigen::Index j = 0; j < f.size(); ++j) {
-    const double viscous = slope_[j] * v[j];
-    f[j] = friction_[j] * (f[j] - viscous) + viscous_[j] * viscous;
+    if (slope_[j] == 0) {
+      f[j] = part(friction_[j], f[j]);
+    } else if (std::isinf(f[j])) {
+      f[j] = part(viscous_[j], f[j]);
+    } else {
+      const double viscous = slope_[j] * v[j];
+      f[j] = friction_[j] * (f[j] - viscous) + viscous_[j] * viscous;
+    }
   }
 }
 

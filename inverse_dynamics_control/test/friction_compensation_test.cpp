@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "arms.hpp"
+#include "inverse_dynamics_control/model_terms.hpp"
 
 namespace inverse_dynamics_control::friction_compensation_test {
 
@@ -37,6 +41,24 @@ TEST(FrictionCompensation, FrictionThatJumpsAtRestIsCompensatedContinuously) {
     }
     EXPECT_EQ(compensated(0.0), 0.0);
     EXPECT_NEAR(compensated(0.4), Pendulum::friction(0.4), kRounding);
+  }
+}
+
+TEST(FrictionCompensation, SharesLeaveNoNanOfAnInfiniteVelocity) {
+  for (const double viscous : {0.0, 0.25, 0.5, 1.0}) {
+    Compensated shares;
+    shares.friction = 0.5;
+    shares.viscous = viscous;
+    const ModelTerms terms(Pendulum::make(), shares, "law");
+    const auto left = [&](double v) {
+      Eigen::VectorXd f(1);
+      terms.friction(vec({0.0}), vec({v}), f);
+      return f[0];
+    };
+    EXPECT_NEAR(left(1.5), 0.5 * (3.0 - 0.8) + (1.0 - viscous) * 3.0, kRounding);
+    const double all = std::numeric_limits<double>::infinity();
+    for (const double v : {all, -all}) EXPECT_EQ(left(v), viscous < 1 ? v : 0.0) << viscous;
+    EXPECT_TRUE(std::isnan(left(std::nan(""))));
   }
 }
 

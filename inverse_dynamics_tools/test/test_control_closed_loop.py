@@ -141,9 +141,8 @@ def test_computed_torque_tracks_ten_times_better_than_pd_of_the_same_gains(name:
 def test_a_robot_that_compensates_shares_itself_follows_as_one_that_does_not(name: str) -> None:
     """Hidden shares of gravity and friction, each joint its own.
 
-    Viscous friction that the robot compensates no longer damps what the law, by the reference's velocity, leaves of
-    Coulomb friction at a reversal. So with Universal Robots' shares the error is 1.24 and 1.18 times as great, and with
-    independent random ones up to 2.2 times in the UR10's wrist.
+    Viscous friction that the robot compensates would no longer damp what the law, by the reference's velocity, leaves
+    of Coulomb friction at a reversal: without lostDamping() errors are up to 2.2 times as great.
     """
     n = len(HOME[name])
     solver = Solver(RIGID_BODY, rubbing(name), *CHAINS[name], parameters={"urdf_friction": True})
@@ -162,9 +161,10 @@ def test_a_robot_that_compensates_shares_itself_follows_as_one_that_does_not(nam
         return float(np.abs(follow_fast_motion(robot, name, command)[1]).max())
 
     none = greatest(0 * equal, Compensated())
-    for shares, most in ((equal, 1.1), (of_ur, 1.3)):
+    others = np.random.default_rng(1).uniform(0, 1, (2, 3, n))
+    for shares in (equal, of_ur, *others):
         known = Compensated(gravity=shares[0], friction=shares[1], viscous=shares[2])
-        assert greatest(shares, known) <= most * none
+        assert greatest(shares, known) <= 1.1 * none
     assert greatest(of_ur, Compensated()) > 2 * none
 
 

@@ -107,6 +107,12 @@ class ControlLaw {
   void addFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
                    const ConstVectorRef& qd_reference, VectorRef tau);
 
+  /// Adds `d (qd_reference - qd)` where friction of the reference's velocity is compensated: damping that
+  /// the robot takes by compensating more of viscous friction than of the rest, and without which the
+  /// rest would disturb more.
+  void addLostDamping(const ConstVectorRef& qd, const ConstVectorRef& qd_reference,
+                      VectorRef tau) const;
+
   /// Safe torque, and why.
   Status refuse(Status why, const JointState& state, double period, VectorRef tau) noexcept;
 

@@ -6,6 +6,7 @@
 ///     model.torques(q, qd, a, tau);   // H(q) a + C(q, qd) qd + g(q), or what is left of it
 #pragma once
 
+#include <algorithm>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <string>
@@ -61,6 +62,12 @@ class ModelTerms {
 
   /// What is left of `f(q, v)`, n.
   void friction(const ConstVectorRef& q, const ConstVectorRef& v, VectorRef f) const;
+
+  /// Of joint j: damping that the arm lacks beside the rest of its friction, as the robot compensates more
+  /// of the viscous part than of the others; N m s/rad (prismatic N s/m).
+  double lostDamping(Eigen::Index j) const {
+    return std::max(0.0, friction_[j] - viscous_[j]) * slope_[j];
+  }
 
  private:
   std::shared_ptr<const InverseDynamicsSolver> solver_;
