@@ -98,7 +98,7 @@ void checkFrictionLaws(const Model& model) {
 void checkCoupling(const Model& model) {
   const auto n = static_cast<Eigen::Index>(model.friction.size());
   const OwnedMatrix& C = model.coupling;
-  if (C.size() == 0) return;
+  if (C.size() == 0 || n == 0) return;
   const std::string where = "model " + model.name;
   if (C.rows() != n || C.cols() != n || !C.allFinite()) {
     throw ModelError(where, "coupling",
