@@ -85,13 +85,16 @@ def arm_model(
         return open_solver(replace(robot, friction=False), description)
 
     def pulled(q: Floats) -> Floats:
-        before, parts = other().gravity, []
+        changed = other()
+        if without_gravity and subtracted is not None and subtracted is not solver:
+            changed = subtracted
+        before, parts = changed.gravity, []
         try:
             for axis in np.eye(3):
-                other().set_gravity(_STANDARD * axis)  # 1 m/s^2 would give a warning
-                parts.append(other().gravity_vector(q) / _STANDARD)
+                changed.set_gravity(_STANDARD * axis)  # 1 m/s^2 would give a warning
+                parts.append(changed.gravity_vector(q) / _STANDARD)
         finally:
-            other().set_gravity(before)
+            changed.set_gravity(before)
         return np.array(parts)
 
     def loaded(q: Floats, qd: Floats, qdd: Floats) -> Floats:
