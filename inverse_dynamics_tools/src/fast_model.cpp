@@ -130,6 +130,9 @@ std::unique_ptr<FastModel> identified(const FastModel& engine, const IdentifiedM
        found.attr("friction").cast<std::vector<chain_dynamics::SmoothCoulomb>>()) {
     model.friction.emplace_back(law);
   }
+  if (const py::object coupling = found.attr("coupling"); !coupling.is_none()) {
+    model.coupling = states(coupling.cast<Array>(), "coupling").transpose();
+  }
   model.torque_deviation = Eigen::Map<const Eigen::VectorXd>(bands.data(), n);
   model.seen = ranges;
   return std::make_unique<FastModel>(model, engine.threads());

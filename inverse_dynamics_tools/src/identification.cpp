@@ -81,7 +81,8 @@ using Vector = Eigen::VectorXd;
 std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::string& root,
                                           const std::string& tip,
                                           const std::optional<std::array<double, 3>>& gravity,
-                                          const std::map<std::string, double>& locked_joints) {
+                                          const std::map<std::string, double>& locked_joints,
+                                          const std::optional<Array>& coupling) {
   chain_dynamics::UrdfOptions options;
   options.locked_position = [&](const std::string& joint) {
     const auto found = locked_joints.find(joint);
@@ -90,7 +91,10 @@ std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::st
   options.root = root;
   options.tip = tip;
   if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
-  return std::make_unique<ArmFitter>(chain_dynamics::chainFromUrdf(urdf, options));
+  Eigen::MatrixXd motors;
+  if (coupling) motors = states(*coupling, "coupling").transpose();
+  return std::make_unique<ArmFitter>(chain_dynamics::chainFromUrdf(urdf, options),
+                                     identification::LinkFloor{}, motors);
 }
 
 /// What the tip carries in each block: arguments of set_payload(), or none.
@@ -216,8 +220,17 @@ void bindIdentification(py::module_& module) {
           "from_urdf", &fitterFromUrdf, py::arg("urdf"), py::kw_only(), py::arg("root") = "",
           py::arg("tip") = "", py::arg("gravity") = py::none(),
           py::arg("locked_joints") = std::map<std::string, double>(),
+          py::arg("coupling") = py::none(),
           "Of a URDF's text, whose links are the prior. locked_joints: positions of joints\n"
-          "beside the chain, else 0.")
+          "beside the chain, else 0. coupling: (n, n), friction is of motors with velocities\n"
+          "`coupling qd`.")
+      .def_property_readonly(
+          "coupling",
+          [](const ArmFitter& f) -> std::optional<Array> {
+            if (f.coupling().size() == 0) return std::nullopt;
+            return rowsOf(chain_dynamics::OwnedMatrix(f.coupling().transpose()));
+          },
+          "(n, n); None: each joint has a motor of its own.")
       .def_property_readonly(
           "joint_names", [](const ArmFitter& f) { return tupleOf(f.description().jointNames()); },
           "Names of the joints, from root to tip: the order of all arrays.")

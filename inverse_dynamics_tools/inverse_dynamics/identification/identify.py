@@ -92,6 +92,7 @@ def identify(
     *,
     blocks: int | None = None,
     known_payloads: Sequence[KnownPayload] = (),
+    coupling: Sequence[float] = (),
     accept: Sequence[str] = (),
     progress: Progress = no_progress,
     **options: Any,
@@ -110,6 +111,9 @@ def identify(
     known_payloads
         Further recordings of motor currents, each with a load as the parameters payload.* of solvers.
         They determine the drive gains.
+    coupling
+        Of n joints whose motors others turn too, the n rows of C, one after the other: motors have velocities
+        `C qd`, and friction is theirs. By default of the matrix of `gears`, scaled to ones on its diagonal.
     accept
         Kinds of refusals.REFUSED that are accepted.
     options
@@ -142,6 +146,8 @@ def identify(
     description = _description(robot)
     _check_distinct([*recordings, *(path for path, _ in known_payloads)])
     fitter = _fitter(robot, description)
+    motors = _coupling(coupling, options.get("gears") or robot.gears, len(fitter.joint_names))
+    fitter = _fitter(robot, description, motors)
     posture = Posture()
     if recordings:
         posture = posture_of(
@@ -155,7 +161,7 @@ def identify(
         )
     if posture.parameters:
         robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
-        fitter = _fitter(robot, description)
+        fitter = _fitter(robot, description, motors)
     gains: tuple[DriveGain, ...] = ()
     if known_payloads and recordings:
         gains = identify_drive_gains(
@@ -206,13 +212,30 @@ def identify(
     return found
 
 
-def _fitter(robot: Robot, description: str) -> ArmFitter:
+def _coupling(stated: Sequence[float], gears: Sequence[float], joints: int) -> Floats | None:
+    """Velocities of motors by those of joints, (n, n); None: friction is of joints."""
+    if stated and len(stated) != joints**2:
+        raise IdentificationError(
+            f"coupling: expected the {joints**2} numbers of a matrix, got {len(stated)}"
+        )
+    numbers = stated or gears
+    if len(numbers) != joints**2:
+        return None  # ratios, or nothing
+    rows = np.reshape(np.array(numbers, dtype=float), (joints, joints))
+    if not stated and np.triu(rows, 1).any():
+        return None  # motors turn with joints after theirs: friction is fitted to joints
+    found: Floats = rows / np.diag(rows)[:, None]
+    return None if np.array_equal(found, np.eye(joints)) else found
+
+
+def _fitter(robot: Robot, description: str, coupling: Floats | None = None) -> ArmFitter:
     return _core.ArmFitter.from_urdf(
         description,
         root=robot.root,
         tip=robot.tip,
         gravity=robot.gravity,
         locked_joints=locked_joints(robot),
+        coupling=coupling,
     )
 
 
@@ -325,7 +348,7 @@ def _banded(
         worth=1.0,
     )
     factor = factor_of(fitter, chosen.fit, later, known, law=chosen.law)
-    model = described.identified(_model(chosen, blocks, None))
+    model = described.identified(_model(fitter, chosen, blocks, None))
     solver = solver_of_text(model.file_text(name="fit", source="", validity=""))
     return band_of(chosen, factor, blocks, limits), solver
 
@@ -371,7 +394,7 @@ def _result(
         gravity = (_gravity_finding(robot, weights, first.units),)
     factor = np.hstack([factor_of(fitter, fit, later, known, law=chosen.law), known.assumed])
     currents = first.effort.meaning == "current"
-    model = _model(chosen, cut, np.array(first.effort.drive_gains) if currents else None)
+    model = _model(fitter, chosen, cut, np.array(first.effort.drive_gains) if currents else None)
     levels: tuple[Level, ...] = ()
     if by_day:
         text = described.identified(model).file_text(name="fit", source="", validity="")
@@ -416,7 +439,9 @@ def _result(
     )
 
 
-def _model(chosen: Chosen, cut: Sequence[Block], drive_gains: Floats | None) -> IdentifiedModel:
+def _model(
+    fitter: ArmFitter, chosen: Chosen, cut: Sequence[Block], drive_gains: Floats | None
+) -> IdentifiedModel:
     fit = chosen.fit
     used = [(b.q[b.counts], b.qd[b.counts], b.qdd[b.counts]) for b in cut]
     seen = [np.concatenate(values) for values in zip(*used, strict=True)]
@@ -427,6 +452,7 @@ def _model(chosen: Chosen, cut: Sequence[Block], drive_gains: Floats | None) -> 
         drive_gains=drive_gains,
         torque_deviation=chosen.band,
         seen=np.stack([np.stack([s.min(0), s.max(0)], axis=1) for s in seen]),
+        coupling=fitter.coupling,
     )
 
 

@@ -86,6 +86,7 @@ class IdentifiedModel:
     drive_gains: Floats | None  # (n,) N m/A where efforts are currents
     torque_deviation: Floats  # (n,) N m: half the width of the 95 % band of measured - computed
     seen: Floats  # (3, n, 2): lowest and highest q, qd, qdd of the samples
+    coupling: Floats | None = None  # (n, n): friction is of motors with velocities `coupling qd`
 
 
 @dataclass(frozen=True)

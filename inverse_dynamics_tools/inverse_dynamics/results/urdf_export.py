@@ -239,6 +239,7 @@ def _comment(found: Identification, lumped: Mapping[str, Sequence[str]]) -> str:
         text
         for text, there in (
             ("the width of the step", bool(lumped)),
+            ("that joints share motors", found.model.coupling is not None),
             ("offsets", bool(np.any(found.offsets))),
             ("the shift of the step", bool(np.any(found.shifts))),
             (

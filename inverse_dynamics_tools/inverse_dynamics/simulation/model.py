@@ -80,9 +80,12 @@ class Friction:
         center = 0.0 * qd + self.steepest
         apart = qd - center
         apart = np.where(np.abs(apart) < _NEAR, _NEAR, apart)
-        there, middle = self.torques(np.array([center + apart, center]), np.array([q, q]))
-        slope = np.maximum((there - middle) / apart, 0.0)
-        return slope, there - slope * (center + apart)
+        near = center + apart
+        # each joint by itself at its center: joints may share motors
+        at = np.vstack([near, np.where(np.eye(len(near), dtype=bool), center, near)])
+        there, *middle = self.torques(at, np.tile(q, (len(at), 1)))
+        slope = np.maximum((there - np.diag(middle)) / apart, 0.0)
+        return slope, there - slope * near
 
 
 @dataclass(frozen=True)

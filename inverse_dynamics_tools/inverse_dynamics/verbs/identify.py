@@ -17,7 +17,7 @@ from inverse_dynamics.verbs.options import (
     given_overrides,
     replaces,
 )
-from inverse_dynamics.verbs.values import file_name, stated_payload
+from inverse_dynamics.verbs.values import file_name, numbers, stated_payload
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -99,6 +99,13 @@ def declare(options: Options) -> None:
         default=[],
     )
     options.add(
+        "--coupling C,C,...",
+        "joints share motors, as a wrist whose last motor turns with the joint before: the rows of C, one after the "
+        "other; friction is that of motors with velocities C qd. By default the matrix of --gears",
+        numbers,
+        default=(),
+    )
+    options.add(
         "--accept KIND",
         "identify a model although this mistake is found; a refusal names its KIND. May be given "
         "several times",
@@ -168,6 +175,7 @@ def run(arguments: argparse.Namespace) -> None:
             arguments.recordings,
             robot,
             known_payloads=arguments.known_payload,
+            coupling=arguments.coupling,
             accept=arguments.accept,
             progress=progress,
             **{name: getattr(arguments, name) for name in _OF_RECORDINGS},
