@@ -43,8 +43,8 @@ def found_by_cmake(package: Path) -> set[str]:
     files = [package / "CMakeLists.txt", package / "test" / "CMakeLists.txt"]
     text = "".join(file.read_text(encoding="utf-8") for file in files if file.exists())
     # An interpreter alone is part of every ROS 2.
-    names = set(re.findall(r"find_package\(([\w-]+)(?!.*COMPONENTS Interpreter\))", text)) - WITHOUT_KEY
-    return {KEYS.get(name, name) for name in names}
+    names = re.findall(r"find_package\(([\w-]+)(?!.*COMPONENTS Interpreter\))", text)
+    return {KEYS.get(name, name) for name in set(names) - WITHOUT_KEY}
 
 
 @pytest.mark.parametrize("manifest", MANIFESTS, ids=lambda path: path.parent.name)
