@@ -177,7 +177,7 @@ def _later(blocks: Sequence[Block], delay: float, step: int) -> list[Block]:
 def _delayed(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[float, _Parts]:
     """By how much the torques are later than the states [s], zero where that predicts as well; parts without it.
 
-    A delay must predict parts that are left out better, by a standard error.
+    A delay must predict parts that are left out better.
     """
     delay, start = _delay(fitter, blocks, thinned)
     parts = _Parts(fitter, _later(blocks, 0.0, thinned))
@@ -188,10 +188,7 @@ def _delayed(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[
         tried.left_out(_DELAY_LAW, STRENGTHS[1], [start] * len(tried), passes=1).scores(start.noise)
         for tried in (parts, later)
     )
-    gain = before - after
-    if gain.mean() > gain.std(ddof=1) / np.sqrt(len(gain)):
-        return delay, later
-    return 0.0, parts
+    return (delay, later) if after.mean() < before.mean() else (0.0, parts)
 
 
 def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[float, ArmFit]:
