@@ -146,7 +146,9 @@ def identify(
     description = _description(robot)
     _check_distinct([*recordings, *(path for path, _ in known_payloads)])
     fitter = _fitter(robot, description)
-    motors = _coupling(coupling, options.get("gears") or robot.gears, len(fitter.joint_names))
+    motors, unfitted = _coupling(
+        coupling, options.get("gears") or robot.gears, len(fitter.joint_names)
+    )
     fitter = _fitter(robot, description, motors)
     posture = Posture()
     if recordings:
@@ -206,26 +208,30 @@ def identify(
         by_day=by_day,
     )
     seconds["intervals"] = time.perf_counter() - begin
-    notes = tuple(dict.fromkeys((*posture.notes, *found.notes)))
+    notes = tuple(dict.fromkeys((*posture.notes, *unfitted, *found.notes)))
     found = replace(found, drive_gains=gains, notes=notes, seconds=seconds)
     check_result(found, accept)
     return found
 
 
-def _coupling(stated: Sequence[float], gears: Sequence[float], joints: int) -> Floats | None:
-    """Velocities of motors by those of joints, (n, n); None: friction is of joints."""
+def _coupling(
+    stated: Sequence[float], gears: Sequence[float], joints: int
+) -> tuple[Floats | None, tuple[str, ...]]:
+    """Velocities of motors by those of joints, (n, n), None: friction is of joints; notes."""
     if stated and len(stated) != joints**2:
         raise IdentificationError(
             f"coupling: expected the {joints**2} numbers of a matrix, got {len(stated)}"
         )
     numbers = stated or gears
     if len(numbers) != joints**2:
-        return None  # ratios, or nothing
+        return None, ()  # ratios, or nothing
     rows = np.reshape(np.array(numbers, dtype=float), (joints, joints))
     if not stated and np.triu(rows, 1).any():
-        return None  # motors turn with joints after theirs: friction is fitted to joints
+        return None, (
+            "gears above the diagonal: friction is fitted to joints, not to shared motors",
+        )
     found: Floats = rows / np.diag(rows)[:, None]
-    return None if np.array_equal(found, np.eye(joints)) else found
+    return (None if np.array_equal(found, np.eye(joints)) else found), ()
 
 
 def _fitter(robot: Robot, description: str, coupling: Floats | None = None) -> ArmFitter:

@@ -66,3 +66,10 @@ def test_friction_of_coupled_motors_is_found(recording: Path, tmp_path: Path) ->
 def test_a_matrix_of_another_size_is_refused(recording: Path) -> None:
     with pytest.raises(IdentificationError, match="expected the 36 numbers of a matrix, got 4"):
         found_with(recording, (1.0, 0.0, 0.5, 1.0))
+
+
+def test_motors_that_turn_with_later_joints_are_told(recording: Path) -> None:
+    """Of gears: those of the recording, 1 all along."""
+    gears = tuple((np.eye(6) + np.eye(6, k=1) * 1e-9).ravel())
+    found = identify([recording], "ur10_simulated", gears=gears)
+    assert any("gears above the diagonal" in note for note in found.notes)
