@@ -167,6 +167,9 @@ VectorXd PathDynamics::excess(const Eigen::Ref<const VectorXd>& z) const {
     qd.col(i) *= std::sqrt(here);
   }
   solver_.getTorquesBatch(q, qd, qdd, tau);
+  const auto* tip =
+      std::isfinite(limits_.tip_speed) ? dynamic_cast<const ids::Kinematics*>(&solver_) : nullptr;
+  MatrixXd J(6, n);
   VectorXd most = VectorXd::Zero(points() - 1);
   for (Index i = 0; i < count; ++i) {
     double& worst = most[places[static_cast<std::size_t>(i)].k];
@@ -176,6 +179,10 @@ VectorXd PathDynamics::excess(const Eigen::Ref<const VectorXd>& z) const {
     };
     look(qd.col(i), limits_.velocity);
     look(qdd.col(i), limits_.acceleration);
+    if (tip != nullptr) {
+      tip->getTipJacobian(q.col(i), J);
+      worst = std::max(worst, (J.topRows(3) * qd.col(i)).norm() / limits_.tip_speed - 1.0);
+    }
     for (Index j = 0; j < n; ++j) {
       const double limit = torqueLimit(j, qd(j, i));
       worst = std::max(worst, (std::abs(tau(j, i)) - limit) / limits_.torque[j]);
@@ -242,9 +249,11 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
   } rules[] = {
       {n <= 64, "solver", "at most 64 joints", std::to_string(n)},
       {limits.torque.size() == n, "limits.torque", "a limit of each joint, N m", "none"},
-      {limits.knee_velocity.size() == limits.no_load_velocity.size() &&
+      {limits.knee_velocity.size() == limits.no_load_velocity.size(), "limits.knee_velocity",
+       "with no_load_velocity, or neither", "only one of both"},
+      {limits.knee_velocity.size() != limits.no_load_velocity.size() ||
            (limits.knee_velocity.array() < limits.no_load_velocity.array()).all(),
-       "limits.knee_velocity", "for each joint less than no_load_velocity, or neither", "others"},
+       "limits.knee_velocity", "for each joint less than no_load_velocity", "more"},
       {limits.tip_speed > 0.0, "limits.tip_speed", "> 0 m/s", text(limits.tip_speed)},
       {std::isinf(limits.tip_speed) || kinematics, "limits.tip_speed",
        "none, or a solver with the capability Kinematics", text(limits.tip_speed)},

@@ -17,7 +17,7 @@ constexpr int kDampedFrom = 10;
 // Relative change of z that ends them. Newton's method leaves about its square.
 constexpr double kSame = 1e-4;
 
-// Beyond every speed that limits of torque allow, and next to standing still.
+// Faster than limits of torque allow anywhere, and as good as standing still.
 constexpr double kFastest = 1e12, kSlowest = 1e-12;
 // Friction and the torque of motors bend: where lines that touch them leave no room, those that touch
 // them at a slower speed may.

@@ -55,21 +55,20 @@ std::vector<Index> borders(const Path& path) {
 
 constexpr double kAllowed = 1e-3;  // above a limit between points, share of it
 constexpr int kRefinements = 10;
+constexpr int kTries = 2;  // finer grids before a path is refused
 constexpr Index kParts = 4;
 
-/// The grid with intervals split in whose middle limits are passed: friction, or how fast a joint may
-/// move along the path, changes within them, as a joint turns back. Empty: none are.
-VectorXd refined(const PathDynamics& dynamics, const VectorXd& z) {
-  std::vector<double> s{dynamics.s(0)};
-  const VectorXd excess = dynamics.excess(z);
-  for (Index k = 0; k + 1 < dynamics.points(); ++k) {
-    const double from = dynamics.s(k), to = dynamics.s(k + 1);
+/// The grid with intervals split within which limits are passed: friction, or how fast a joint may move
+/// along the path, changes within them, as a joint turns back. Empty: none are.
+VectorXd refined(const VectorXd& grid, const VectorXd& excess) {
+  std::vector<double> s{grid[0]};
+  for (Index k = 0; k + 1 < grid.size(); ++k) {
     for (Index i = 1; i < kParts && excess[k] > kAllowed; ++i) {
-      s.push_back(from + (to - from) * static_cast<double>(i) / kParts);
+      s.push_back(grid[k] + (grid[k + 1] - grid[k]) * static_cast<double>(i) / kParts);
     }
-    s.push_back(to);
+    s.push_back(grid[k + 1]);
   }
-  if (static_cast<Index>(s.size()) == dynamics.points()) return {};
+  if (static_cast<Index>(s.size()) == grid.size()) return {};
   return Eigen::Map<const VectorXd>(s.data(), static_cast<Index>(s.size()));
 }
 
@@ -117,10 +116,17 @@ Retimed retime(const InverseDynamicsSolver& solver, const Path& path, const Moti
     for (int round = 0;; ++round) {
       const PathDynamics dynamics(solver, path, grid, limits, options.margin);
       PhasePlane plane(dynamics);
-      if (!plane.solve(start * start, end * end)) return {{}, plane.refusal()};
-      z = plane.z();
-      finer = refined(dynamics, z);
-      if (finer.size() == 0 || round == kRefinements) break;
+      if (plane.solve(start * start, end * end)) {
+        z = plane.z();
+        finer = refined(grid, dynamics.excess(z));
+        if (finer.size() == 0 || round == kRefinements) break;
+      } else {
+        // Intervals that are too coarse may leave no way where finer ones do.
+        if (plane.refusal().reason != Refusal::Reason::kNoWayOn || round == kTries) {
+          return {{}, plane.refusal()};
+        }
+        finer = refined(grid, VectorXd::Ones(grid.size() - 1));
+      }
       grid = finer;
     }
     s.insert(s.end(), grid.begin(), grid.end());

@@ -189,10 +189,17 @@ def test_limits_hold_between_points_of_the_grid(arm, velocity):
         waypoints = random.uniform(-1.2, 1.2, (random.integers(2, 6), len(torque)))
         path = JointPath.spline(waypoints) if k % 2 else JointPath.lines(waypoints, 0.05)
         grid = RetimeOptions(points=100 if k % 4 < 2 else 1000)
-        timed = retime_path(solver, path, MotionLimits(torque=torque, velocity=velocity), grid)
+        limits = MotionLimits(
+            torque=torque, velocity=velocity, tip_speed=0.25 if k % 10 < 3 else 10.0
+        )
+        timed = retime_path(solver, path, limits, grid)
         between = timed.time[:-1, None] + np.outer(np.diff(timed.time), np.arange(0.05, 1.0, 0.1))
         q, qd, qdd = timed.states(between.ravel())
         assert (np.abs(qd) / velocity).max() < 1.0 + SHORTER
+        tip = [
+            np.linalg.norm(solver.jacobian(a)[:3] @ v) for a, v in zip(q[::7], qd[::7], strict=True)
+        ]
+        assert max(tip) < limits.tip_speed * (1.0 + SHORTER)
         assert (np.abs(solver.torques(q, qd, qdd)) / torque).max() < 1.0 + SHORTER
 
 
