@@ -17,6 +17,7 @@
 #include <sensor_msgs/msg/joint_state.hpp>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -79,10 +80,25 @@ class TwoArms : public testing::Test {
     return "inverse_dynamics_controllers/" + controller;
   }
 
+  // Humble's takes the resources, later ones the robot's description.
+  template <class Executor>
+  static std::shared_ptr<controller_manager::ControllerManager> managerOf(
+      const std::shared_ptr<Executor>& executor, const std::string& robot,
+      const std::string& name_space) {
+    using Manager = controller_manager::ControllerManager;
+    using Resources = hardware_interface::ResourceManager;
+    if constexpr (std::is_constructible_v<Manager, std::shared_ptr<Executor>, std::string, bool,
+                                          std::string, std::string>) {
+      return std::make_shared<Manager>(executor, robot, true, "manager", name_space);
+    } else {
+      return std::make_shared<Manager>(std::make_unique<Resources>(robot), executor, "manager",
+                                       name_space);
+    }
+  }
+
   // Another controller manager, which is meant from now on.
   void add(const std::string& robot, const std::string& name_space = "") {
-    manager_ = std::make_shared<controller_manager::ControllerManager>(executor_, robot, true,
-                                                                       "manager", name_space);
+    manager_ = managerOf(executor_, robot, name_space);
     managers_.push_back(manager_);
     executor_->add_node(manager_);
   }

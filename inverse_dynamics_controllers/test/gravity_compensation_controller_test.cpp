@@ -165,7 +165,7 @@ TEST_F(GravityCompensationControllerTest, AnErrorAndAShutdownLeaveTheSafeTorque)
   for (const auto end :
        {&GravityCompensationController::on_error, &GravityCompensationController::on_shutdown}) {
     std::fill(hardware.tau.begin(), hardware.tau.end(), 0.0);
-    EXPECT_EQ((controller.*end)(controller.get_lifecycle_state()),
+    EXPECT_EQ((controller.*end)(rclcpp_lifecycle::State()),
               controller_interface::CallbackReturn::SUCCESS);
     EXPECT_LT((hardware.effort() - safe).norm(), kRounding);
   }
