@@ -55,7 +55,7 @@ Status ComputedTorque::update(const JointState& state, const Reference& referenc
     if (status != Status::kOk) return refuse(status, state, period, tau);
   }
   return output(state, period, tau, [&](VectorRef desired) {
-    // a = qdd_ref + Kp e + Kd ed,  tau = H a + C qd + g + f
+    // a = qdd_ref + Kp e + Kd ed,  tau = H a + C qd + g + f + d (qd_ref - qd)
     acceleration_ = reference.qdd + gains_.Kp.cwiseProduct(positionError(reference.q, state.q)) +
                     gains_.Kd.cwiseProduct(reference.qd - state.qd);
     model().torques(state.q, state.qd, acceleration_, desired);

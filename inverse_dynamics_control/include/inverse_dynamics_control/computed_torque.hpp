@@ -7,8 +7,9 @@
 ///
 /// With e = q_ref - q (the short way of continuous joints) the law
 ///
-///     tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f
+///     tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f + d (qd_ref - qd)
 ///
+/// with d, the damping that the robot's own compensation of friction takes [Compensated],
 /// turns an arm that its model describes into n independent linear systems
 ///
 ///     edd + Kd ed + Kp e = 0
@@ -40,7 +41,8 @@ struct Gains {
   static Gains uniform(Eigen::Index joints, double natural_frequency, double damping_ratio);
 };
 
-/// `tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f`; see the head of this file.
+/// `tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f + d (qd_ref - qd)`; see the head
+/// of this file.
 ///
 /// H feeds measured errors back, so it must be symmetric and positive definite: identified models
 /// often aren't, and a negative diagonal entry would make that joint's feedback positive. Such a
