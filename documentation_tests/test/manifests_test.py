@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import subprocess
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -66,6 +67,18 @@ def test_notices_of_others_are_named_and_there(manifest: Path) -> None:
     named = {licence.attrib["file"] for licence in licences if "file" in licence.attrib}
     present = {f"LICENSES/{path.name}" for path in manifest.parent.glob("LICENSES/*")}
     assert named == present
+
+
+def test_what_a_plain_colcon_build_needs_is_installed() -> None:
+    """Users build packages of their own without ./scripts/build, so with CMake's default, make."""
+    packages = subprocess.run(
+        ["bash", "-c", 'source scripts/common.bash && echo "${apt_packages[@]}"'],
+        cwd=REPOSITORY,
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.split()
+    assert {"g++", "cmake", "make", "colcon"} <= set(packages)
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda path: path.stem)
