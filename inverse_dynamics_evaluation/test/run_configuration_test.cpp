@@ -68,7 +68,7 @@ TEST_F(RunConfigurations, AreFoundByNameInTheSourcedWorkspaces) {
   }
   EXPECT_THAT(errorOf("ur10_rael"),
               AllOf(StartsWith("robot 'ur10_rael': expected one of "),
-                    EndsWith("or a file ending in .yaml; did you mean ur10_real?")));
+                    EndsWith("or a file ending in .yaml or .urdf; did you mean ur10_real?")));
   EXPECT_THAT(errorOf("mine.yaml"),
               HasSubstr("no such file; expected a run configuration, or one"));
   EXPECT_THAT(errorOf(std::string("a\0.yaml", 7)), HasSubstr("no such file"));

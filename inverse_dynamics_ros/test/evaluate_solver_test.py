@@ -134,7 +134,7 @@ CASES = {
     "no_robot": Case(
         {"robot": "ur11_real", "plugin_name": None},
         2,
-        ["robot 'ur11_real': expected one of ", "or a file ending in .yaml"],
+        ["robot 'ur11_real': expected one of ", "or a file ending in .yaml or .urdf"],
     ),
     "trajectory": Case(
         {"input_bag": str(FOLDER / "trajectory")}, 0, ["given by the recording", MADE], "INFO"
