@@ -379,6 +379,10 @@ def test_a_description_is_a_robot_too(ids, bag, tmp_path):
         ids("evaluate", bag, "--robot", "arm.urdf"),
         "arm.urdf: no such file; expected a robot description",
     )
+    fails(
+        ids("evaluate", bag, "--robot", "arm.urdf.xacro"),
+        "--robot arm.urdf.xacro: expected a run configuration or a URDF, got a .xacro file; give it as --urdf",
+    )
     (tmp_path / "empty.urdf").write_text(" \n")
     fails(ids("evaluate", bag, "--urdf", "empty.urdf"), "empty.urdf: is empty; expected a URDF")
     (tmp_path / "log.csv").write_text("time,position.a\n0,1\n")

@@ -230,8 +230,29 @@ def _coupling(
         return None, (
             "gears above the diagonal: friction is fitted to joints, not to shared motors",
         )
+    _check_coupling(rows, "coupling" if stated else "gears")
     found: Floats = rows / np.diag(rows)[:, None]
     return (None if np.array_equal(found, np.eye(joints)) else found), ()
+
+
+def _check_coupling(rows: Floats, option: str) -> None:
+    for row, numbers in enumerate(rows):
+        for column, value in enumerate(numbers):
+            name = f"{option}: row {row + 1}, number {column + 1}"
+            if column == row and (value == 0 or not np.isfinite(value)):
+                raise IdentificationError(
+                    f"{name}: expected a finite number other than 0 on the diagonal, got {value:g}; "
+                    "give 1 for a motor that turns with its joint alone"
+                )
+            if column < row and not np.isfinite(value):
+                raise IdentificationError(
+                    f"{name}: expected a finite number, got {value:g}; give 0 for motors that aren't coupled"
+                )
+            if column > row and value != 0:
+                raise IdentificationError(
+                    f"{name}: expected 0 above the diagonal, got {value:g}; "
+                    "motors may turn with joints before theirs only"
+                )
 
 
 def _fitter(robot: Robot, description: str, coupling: Floats | None = None) -> ArmFitter:

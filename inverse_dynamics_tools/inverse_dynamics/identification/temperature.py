@@ -39,14 +39,17 @@ def at_temperature(
 
     temperatures: of each recording, (R,) or (R, n).
 
-    Raises IdentificationError: fewer than three recordings, or the same temperature in all.
+    Raises IdentificationError: fewer than three recordings, the same temperature in all, or one so far from them
+    that no friction would be left.
     """
     count, n = len(found.levels), len(found.joints)
-    T = np.array(temperatures, dtype=float).reshape(len(temperatures), -1) * np.ones(n)
-    if count < _FEWEST or len(T) != count or (np.ptp(T, axis=0) == 0).any():
+    given = np.array(temperatures, dtype=float)
+    enough = count >= _FEWEST and len(given) == count
+    T = given.reshape(count, -1) * np.ones(n) if enough else np.empty((0, n))
+    if not enough or (np.ptp(T, axis=0) == 0).any():
         raise IdentificationError(
             f"temperatures: expected different ones of {_FEWEST} or more recordings that are identified together, "
-            f"got {np.array(temperatures).tolist()} of {count} recordings"
+            f"got {given.tolist()} of {count} recordings"
         )
     share = np.array([level.share for level in found.levels])
     factors = count * (1 + share) / (count + share)  # a level is held against the other recordings
@@ -54,6 +57,12 @@ def at_temperature(
     k = (warmer * (factors - 1)).sum(axis=0) / (warmer**2).sum(axis=0)
     left = ((factors - 1 - k * warmer) ** 2).sum(axis=0)
     factor = 1 + k * (np.asarray(temperature) - T.mean(axis=0))
+    for name, value, of_joint in zip(found.joints, factor, T.T, strict=True):
+        if not value > 0:
+            raise IdentificationError(
+                f"joint {name}: expected a temperature at which friction is above zero, got {value:.2g} times that "
+                f"of the recordings; give one nearer to their range, {of_joint.min():g} to {of_joint.max():g}"
+            )
     friction = tuple(
         {key: float(value * scale) if key in _TORQUES else value for key, value in law.items()}
         for law, scale in zip(found.model.friction, factor, strict=True)

@@ -139,6 +139,11 @@ def chosen_robot(arguments: argparse.Namespace) -> Robot:
     from inverse_dynamics.robot.robots import load_robot, robot_of_description
 
     if arguments.robot is not None:
+        if arguments.robot.endswith(".xacro"):
+            raise UserError(
+                f"--robot {arguments.robot}: expected a run configuration or a URDF, got a .xacro file; "
+                "give it as --urdf"
+            )
         return load_robot(arguments.robot)
     described = _described(arguments)
     if described is None:

@@ -68,6 +68,29 @@ def test_a_matrix_of_another_size_is_refused(recording: Path) -> None:
         found_with(recording, (1.0, 0.0, 0.5, 1.0))
 
 
+@pytest.mark.parametrize(
+    ("row", "column", "value", "message"),
+    [
+        (
+            2,
+            2,
+            0.0,
+            "row 3, number 3: expected a finite number other than 0 on the diagonal, got 0",
+        ),
+        (2, 2, np.nan, "row 3, number 3: expected a finite number other than 0 on the diagonal"),
+        (4, 5, 0.5, "row 5, number 6: expected 0 above the diagonal, got 0.5; motors may turn"),
+        (5, 4, np.inf, "row 6, number 5: expected a finite number, got inf; give 0"),
+    ],
+)
+def test_a_matrix_that_couples_otherwise_is_refused(
+    row: int, column: int, value: float, message: str
+) -> None:
+    matrix = np.eye(6)
+    matrix[row, column] = value
+    with pytest.raises(IdentificationError, match=f"coupling: {message}"):
+        identify(["none"], "ur10_simulated", coupling=tuple(matrix.ravel()))
+
+
 def test_motors_that_turn_with_later_joints_are_told(recording: Path) -> None:
     """Of gears: those of the recording, 1 all along."""
     gears = tuple((np.eye(6) + np.eye(6, k=1) * 1e-9).ravel())

@@ -473,9 +473,11 @@ def test_friction_follows_the_temperature(identified_on, tmp_path):
     assert (warm.band.share < SHARE).all()
     file = write_identification(warm, tmp_path / "arm.yaml").robot
     assert evaluate(found.recordings[0], file).band is not None
-    for temperatures in ([40.0, 30.0], [30.0, 30.0, 30.0]):
+    for temperatures in ([], [40.0, 30.0], [30.0, 30.0, 30.0]):
         with pytest.raises(IdentificationError, match="expected different ones of 3 or more"):
             at_temperature(found, temperatures, 45.0)
+    with pytest.raises(IdentificationError, match=r"joint \w+: expected .* range, 20 to 40$"):
+        at_temperature(found, [40.0, 30.0, 20.0], 120.0)
 
 
 def blocks_of_arrays(q, qd, qdd, tau):
