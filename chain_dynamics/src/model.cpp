@@ -101,9 +101,11 @@ void checkCoupling(const Model& model) {
   if (C.size() == 0 || n == 0) return;
   const std::string where = "model " + model.name;
   if (C.rows() != n || C.cols() != n || !C.allFinite()) {
-    throw ModelError(where, "coupling",
-                     "finite numbers of " + std::to_string(n) + " laws of friction",
-                     std::to_string(C.rows()) + " x " + std::to_string(C.cols()), "");
+    const std::string size = std::to_string(n);
+    throw ModelError(where, "coupling", size + " x " + size + " finite numbers",
+                     std::to_string(C.rows()) + " x " + std::to_string(C.cols()) +
+                         (C.allFinite() ? "" : ", not all finite"),
+                     "state a row per motor, of a number per joint, or no coupling");
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     const auto joint = static_cast<std::size_t>(j);

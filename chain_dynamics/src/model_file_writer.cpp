@@ -130,7 +130,7 @@ std::string jointLines(const Model& model, std::size_t j) {
   }
   text += entry("drive_gain", model.drive_gains);
   if (!model.friction.empty()) text += frictionLine(model.friction[j]);
-  if (model.coupling.size() > 0) {
+  if (model.coupling.size() > 0 && !model.friction.empty()) {
     text += "    coupling: " + list(model.coupling.row(static_cast<Eigen::Index>(j))) + "\n";
   }
   text += linkLines(model, j);

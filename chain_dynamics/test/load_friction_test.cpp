@@ -96,7 +96,17 @@ TEST(CoupledMotors, HaveNoLoadFrictionWhereTheyMoveOtherJoints) {
               testing::ThrowsMessage<ModelError>(testing::HasSubstr("no load term fl")));
   model.coupling = Eigen::MatrixXd::Identity(3, 3);
   EXPECT_THAT([&] { checkModel(model); },
-              testing::ThrowsMessage<ModelError>(testing::HasSubstr("of 2 laws")));
+              testing::ThrowsMessage<ModelError>(testing::HasSubstr("2 x 2 finite numbers, got 3 x 3")));
+  model.coupling = Eigen::Matrix2d{{1, 0}, {std::nan(""), 1}};
+  EXPECT_THAT([&] { checkModel(model); },
+              testing::ThrowsMessage<ModelError>(testing::HasSubstr("2 x 2, not all finite")));
+}
+
+TEST(CoupledMotors, AreNotWrittenWithoutFriction) {
+  Model model(revolute(randomChain(2)));
+  model.coupling = Eigen::Matrix2d{{1, 0}, {-0.5, 1}};
+  checkModel(model);
+  EXPECT_EQ(modelFromYaml(modelFileText(model), "written").coupling.size(), 0);
 }
 
 TEST(LoadFriction, NeedsNoPositionsWhereNoLawDependsOnLoad) {
