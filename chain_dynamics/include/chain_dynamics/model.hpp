@@ -67,8 +67,7 @@ struct Model {
 
   /// Empty: each law is of its joint. Otherwise n x n, of motors that joints share, as in wrists whose
   /// last motor turns with the joint before: motors have velocities `v = coupling qd`, and friction of
-  /// the joints is `coupling' f(v)`, f_j by law j. Laws of motors that turn with several
-  /// joints have no load term.
+  /// the joints is `coupling' f(v)`, f_j by law j. Motors that turn with several have no load term.
   OwnedMatrix coupling = {};
 
   /// Empty: nothing is known about motors. Otherwise torque per motor current of each joint; N m/A.
