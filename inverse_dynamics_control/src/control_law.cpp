@@ -66,7 +66,7 @@ void ControlLaw::addLostDamping(const ConstVectorRef& qd, const ConstVectorRef& 
                                 VectorRef tau) const {
   if (friction_.source() != FrictionSource::kReferenceVelocity) return;
   for (Eigen::Index j = 0; j < tau.size(); ++j) {
-    tau[j] += model_.lostDamping(j) * (qd_reference[j] - qd[j]);
+    tau[j] += model_.lostDamping(j, qd, qd_reference);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/model_terms.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -27,6 +28,16 @@ OwnedVector left(const Shares& shares, const std::string& where,
 /// `share f`, and no NaN where nothing is left of infinite friction.
 double part(double share, double f) { return share == 0 && std::isinf(f) ? 0.0 : share * f; }
 
+/// Sum of `V(j, i) velocity(i)`, of coefficients that aren't zero.
+template <class Velocity>
+double viscousOf(const chain_dynamics::OwnedMatrix& V, Eigen::Index j, const Velocity& velocity) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < V.cols(); ++i) {
+    if (V(j, i) != 0) sum += V(j, i) * velocity(i);
+  }
+  return sum;
+}
+
 }  // namespace
 
 ModelTerms::ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver,
@@ -48,10 +59,14 @@ ModelTerms::ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver,
   coriolis_ = of(compensated.coriolis, "coriolis");
   friction_ = of(compensated.friction, "friction");
   viscous_ = of(compensated.viscous.value_or(compensated.friction), "viscous");
-  slope_ = Eigen::VectorXd::Zero(n);
+  V_ = Eigen::MatrixXd::Zero(n, n);
   if ((viscous_ - friction_).isZero(0)) return;
-  const Eigen::VectorXd q = Eigen::VectorXd::Zero(n), fast = Eigen::VectorXd::Constant(n, kFast);
-  slope_ = (solver_->getFrictionVector(q, 2 * fast) - solver_->getFrictionVector(q, fast)) / kFast;
+  const Eigen::VectorXd q = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd fast = kFast * Eigen::VectorXd::Unit(n, i);
+    V_.col(i) =
+        (solver_->getFrictionVector(q, 2 * fast) - solver_->getFrictionVector(q, fast)) / kFast;
+  }
 }
 
 void ModelTerms::torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& a,
@@ -80,15 +95,21 @@ void ModelTerms::friction(const ConstVectorRef& q, const ConstVectorRef& v, Vect
   if (friction_.isZero(0) && viscous_.isZero(0)) return;
   solver_->getFrictionVector(q, v, f);
   for (Eigen::Index j = 0; j < f.size(); ++j) {
-    if (slope_[j] == 0) {
+    const double viscous = viscousOf(V_, j, [&](Eigen::Index i) { return v[i]; });
+    if (viscous == 0) {
       f[j] = part(friction_[j], f[j]);
     } else if (std::isinf(f[j])) {
       f[j] = part(viscous_[j], f[j]);
     } else {
-      const double viscous = slope_[j] * v[j];
       f[j] = friction_[j] * (f[j] - viscous) + viscous_[j] * viscous;
     }
   }
+}
+
+double ModelTerms::lostDamping(Eigen::Index j, const ConstVectorRef& qd,
+                               const ConstVectorRef& qd_reference) const {
+  return std::max(0.0, friction_[j] - viscous_[j]) *
+         viscousOf(V_, j, [&](Eigen::Index i) { return qd_reference[i] - qd[i]; });
 }
 
 }  // namespace v2

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chain_dynamics/model.hpp>
 #include <cmath>
 #include <limits>
 
@@ -60,6 +61,42 @@ TEST(FrictionCompensation, SharesLeaveNoNanOfAnInfiniteVelocity) {
     for (const double v : {all, -all}) EXPECT_EQ(left(v), viscous < 1 ? v : 0.0) << viscous;
     EXPECT_TRUE(std::isnan(left(std::nan(""))));
   }
+}
+
+/// Whose second motor turns with both joints.
+class CoupledArm : public ChainSolver {
+ public:
+  CoupledArm() : ChainSolver(twoBars()), model_(twoBars()) {
+    model_.friction = {chain_dynamics::ViscousCoulombOffset{3, 4, 0},
+                       chain_dynamics::ViscousCoulombOffset{2, 1, 0}};
+    model_.coupling = Eigen::Matrix2d{{1, 0}, {-0.5, 1}};
+  }
+
+ protected:
+  void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
+                       VectorRef f) const override {
+    chain_dynamics::frictionVector(model_, q, qd, f);
+  }
+
+ private:
+  chain_dynamics::Model model_;
+};
+
+// Motors turn at (1, 1.5) rad/s: viscous C' (3, 3) N m, the rest C' (4, 1) N m.
+TEST(FrictionCompensation, SharesAreOfTheTorquesOfCoupledMotors) {
+  const auto solver = std::make_shared<CoupledArm>();
+  solver->initialize();
+  Compensated shares;
+  shares.friction = 0.5;
+  shares.viscous = 0.75;
+  const ModelTerms terms(solver, shares, "law");
+  const Eigen::VectorXd qd = vec({1.0, 2.0}), zero = vec({0.0, 0.0});
+  Eigen::VectorXd f(2);
+  terms.friction(zero, qd, f);
+  EXPECT_NEAR(f[0], 0.25 * 1.5 + 0.5 * 3.5, kRounding);
+  EXPECT_NEAR(f[1], 0.25 * 3.0 + 0.5 * 1.0, kRounding);
+  EXPECT_NEAR(terms.lostDamping(0, zero, qd), 0.25 * 1.5, kRounding);
+  EXPECT_NEAR(terms.lostDamping(1, zero, qd), 0.25 * 3.0, kRounding);
 }
 
 TEST(FrictionCompensation, BadOptionsAreRefused) {

@@ -94,9 +94,17 @@ std::vector<Index> linearColumns(FrictionTerms terms) {
   return columns;
 }
 
-void addGreatest(const ConstStates& qd, VectorXd& greatest) {
+/// Of what has friction: of motors, `coupling qd`, or of joints.
+void addGreatest(const ConstStates& qd, const OwnedMatrix& coupling, VectorXd& greatest) {
   for (Index k = 0; k < qd.count; ++k) {
-    for (Index j = 0; j < qd.joints; ++j) greatest[j] = std::max(greatest[j], std::abs(qd(j, k)));
+    for (Index j = 0; j < qd.joints; ++j) {
+      double v = qd(j, k);
+      if (coupling.size() > 0) {
+        v = 0;
+        for (Index i = 0; i <= j; ++i) v += coupling(j, i) * qd(i, k);  // lower triangular
+      }
+      greatest[j] = std::max(greatest[j], std::abs(v));
+    }
   }
 }
 
@@ -381,7 +389,7 @@ ArmFit ArmFitter::fit(const ArmData& data, const ArmFitOptions& options,
     if (static_cast<int>(b) == options.without) continue;
     blocks.push_back(&data.blocks_[b]);
     links.add(data.blocks_[b].links);
-    addGreatest(data.blocks_[b].samples.qd, greatest);
+    addGreatest(data.blocks_[b].samples.qd, coupling_, greatest);
   }
   if (links.samples() == 0) throw ModelError("ArmFitter: expected samples, got none");
   const auto gram_at = [&](const ArmFit& fit) { return gramOf(fit, options.terms, blocks, links); };
@@ -414,7 +422,7 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const ArmData& data,
   VectorXd greatest = VectorXd::Zero(chain_.jointCount());
   for (std::size_t k = 0; k < data.blocks_.size(); ++k) {
     const ArmData::Block& block = data.blocks_[k];
-    addGreatest(block.samples.qd, greatest);
+    addGreatest(block.samples.qd, coupling_, greatest);
     const RegressorGram gram = gramOf(fit, options.terms, {&block}, block.links);
     gram.normalEquations(weights, A, b);
     result.scores.col(static_cast<Index>(k)) = b - A * x;

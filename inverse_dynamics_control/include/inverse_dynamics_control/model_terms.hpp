@@ -6,7 +6,6 @@
 ///     model.torques(q, qd, a, tau);   // H(q) a + C(q, qd) qd + g(q), or what is left of it
 #pragma once
 
-#include <algorithm>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <string>
@@ -63,11 +62,10 @@ class ModelTerms {
   /// What is left of `f(q, v)`, n.
   void friction(const ConstVectorRef& q, const ConstVectorRef& v, VectorRef f) const;
 
-  /// Of joint j: damping that the arm lacks beside the rest of its friction, as the robot compensates more
-  /// of the viscous part than of the others; N m s/rad (prismatic N s/m).
-  double lostDamping(Eigen::Index j) const {
-    return std::max(0.0, friction_[j] - viscous_[j]) * slope_[j];
-  }
+  /// Of joint j: the torque of damping to the reference that the arm lacks beside the rest of its friction,
+  /// as the robot compensates more of the viscous part than of the others; N m (prismatic N).
+  double lostDamping(Eigen::Index j, const ConstVectorRef& qd,
+                     const ConstVectorRef& qd_reference) const;
 
  private:
   std::shared_ptr<const InverseDynamicsSolver> solver_;
@@ -75,7 +73,8 @@ class ModelTerms {
   OwnedVector bias_, g_;
   // n each: shares that the robot doesn't compensate; friction but for the viscous part
   OwnedVector gravity_, coriolis_, friction_, viscous_;
-  OwnedVector slope_;  // n: of viscous friction; N m s/rad (prismatic N s/m)
+  // n x n: torques of viscous friction by velocities; joints that share motors have them of each other
+  chain_dynamics::OwnedMatrix V_;
 };
 
 }  // namespace v2
