@@ -95,8 +95,9 @@ TEST(CoupledMotors, HaveNoLoadFrictionWhereTheyMoveOtherJoints) {
   EXPECT_THAT([&] { checkModel(model); },
               testing::ThrowsMessage<ModelError>(testing::HasSubstr("no load term fl")));
   model.coupling = Eigen::MatrixXd::Identity(3, 3);
-  EXPECT_THAT([&] { checkModel(model); },
-              testing::ThrowsMessage<ModelError>(testing::HasSubstr("2 x 2 finite numbers, got 3 x 3")));
+  EXPECT_THAT(
+      [&] { checkModel(model); },
+      testing::ThrowsMessage<ModelError>(testing::HasSubstr("2 x 2 finite numbers, got 3 x 3")));
   model.coupling = Eigen::Matrix2d{{1, 0}, {std::nan(""), 1}};
   EXPECT_THAT([&] { checkModel(model); },
               testing::ThrowsMessage<ModelError>(testing::HasSubstr("2 x 2, not all finite")));

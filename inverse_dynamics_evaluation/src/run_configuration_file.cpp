@@ -207,9 +207,10 @@ RunConfiguration readFile(const std::string& file) {
   const std::vector<std::string> known = robotNames();
   const std::string nearest = chain_dynamics::nearestName(name, known);
   const std::string shown = name.size() > kLongest ? name.substr(0, kLongest) + "..." : name;
-  throw ConfigurationError(chain_dynamics::errorText(
-      "robot '" + shown + "'", "", "one of " + joined(known) + ", or a file ending in .yaml or .urdf", "",
-      nearest.empty() ? "" : "did you mean " + nearest + "?"));
+  throw ConfigurationError(
+      chain_dynamics::errorText("robot '" + shown + "'", "",
+                                "one of " + joined(known) + ", or a file ending in .yaml or .urdf",
+                                "", nearest.empty() ? "" : "did you mean " + nearest + "?"));
 }
 
 std::string namesIfAny() {
