@@ -23,7 +23,6 @@ from inverse_dynamics.data.joint_log import JointLog, check_clock
 from inverse_dynamics.data.recordings import open_motion
 from inverse_dynamics.data.table_logs import LogFormat
 from inverse_dynamics.data.time_window import TimeWindow
-from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.accelerations import MASKS, Samples
 from inverse_dynamics.evaluation.bands import read_band
 from inverse_dynamics.evaluation.causes.arm import arm_model
@@ -333,19 +332,9 @@ class Arm:
         own = brings_own_model(robot)
         if robot.urdf is None or (robot.model is None and not own):
             return self.solver
-        parameters = {
-            name: value
-            for name, value in robot.parameters.items()
-            if not own or name.startswith("payload.")
-        }
-        changed = replace(robot, plugin=RIGID_BODY, model=None, friction=False)
-        try:
-            found = open_solver(replace(changed, parameters=parameters), self.description)
-        except UserError:
-            if not own:
-                raise
-            return self.solver  # the description is drawn, no more
-        return found if len(found.joint_names) == len(self.joint_names) else self.solver
+        parameters = {} if own else robot.parameters
+        changed = replace(robot, plugin=RIGID_BODY, parameters=parameters)
+        return open_solver(replace(changed, model=None, friction=False), self.description)
 
 
 def torques_with_gravity(evaluation: Evaluation, robot: Robot | None = None) -> Floats:
