@@ -34,7 +34,7 @@ from inverse_dynamics.evaluation.views import Views
 from inverse_dynamics.robot.descriptions import joint_units, read_description
 from inverse_dynamics.robot.dh_tables import guess_notes
 from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot, with_changes
-from inverse_dynamics.robot.solvers import brings_own_model, description_notes, open_solver
+from inverse_dynamics.robot.solvers import description_notes, open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -324,17 +324,14 @@ class Arm:
 
     @cached_property
     def subtracted(self) -> Solver:
-        """The solver whose gravity efforts without gravity lack: the description's, beside any identified model.
+        """The solver whose gravity efforts without gravity lack: of an identified model, the description's.
 
         The robot subtracts what its maker computes, which nobody measures with such efforts.
         """
         robot = self._robot
-        own = brings_own_model(robot)
-        if robot.urdf is None or (robot.model is None and not own):
+        if robot.model is None or robot.urdf is None or robot.plugin != RIGID_BODY:
             return self.solver
-        parameters = {} if own else robot.parameters
-        changed = replace(robot, plugin=RIGID_BODY, parameters=parameters)
-        return open_solver(replace(changed, model=None, friction=False), self.description)
+        return open_solver(replace(robot, model=None, friction=False), self.description)
 
 
 def torques_with_gravity(evaluation: Evaluation, robot: Robot | None = None) -> Floats:

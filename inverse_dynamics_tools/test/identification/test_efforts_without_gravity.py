@@ -68,10 +68,9 @@ def test_masses_that_are_wrong_by_a_tenth_cost_little(recordings, identified, tm
 
 @ROBOTS
 @pytest.mark.parametrize("mistake", ["turned base", "masses twice"])
-@pytest.mark.parametrize("model", ["simulated", "real"])
-def test_a_wrong_model_of_gravity_is_reported(recordings, name, mistake, model):
+def test_a_wrong_model_of_gravity_is_reported(recordings, name, mistake):
     """Of 50 seeds of the UR10 with a turned base all are; here the first ones."""
-    robot = replace(load_robot(f"{name}_{model}"), effort="torque_without_gravity", joints=())
+    robot = replace(load_robot(f"{name}_simulated"), effort="torque_without_gravity", joints=())
     for seed in range(4):
         random = np.random.default_rng(seed)
         factors, angle = random.uniform(0.9, 1.1, 7)[: 6 + (name == "panda")], random.uniform(0, 6)

@@ -85,16 +85,13 @@ def arm_model(
         return open_solver(replace(robot, friction=False), description)
 
     def pulled(q: Floats) -> Floats:
-        changed = other()
-        if without_gravity and subtracted is not None and subtracted is not solver:
-            changed = subtracted
-        before, parts = changed.gravity, []
+        before, parts = other().gravity, []
         try:
             for axis in np.eye(3):
-                changed.set_gravity(_STANDARD * axis)  # 1 m/s^2 would give a warning
-                parts.append(changed.gravity_vector(q) / _STANDARD)
+                other().set_gravity(_STANDARD * axis)  # 1 m/s^2 would give a warning
+                parts.append(other().gravity_vector(q) / _STANDARD)
         finally:
-            changed.set_gravity(before)
+            other().set_gravity(before)
         return np.array(parts)
 
     def loaded(q: Floats, qd: Floats, qdd: Floats) -> Floats:
