@@ -8,6 +8,7 @@
 #include <chain_dynamics/fast_model.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "arms.hpp"
 
@@ -83,9 +84,11 @@ TEST(ArmFitter, FindsAKnownRobotWithItsFriction) {
   }
 }
 
-/// Of an arm whose last motor turns with the joint before.
-Motion coupledMotion(const Model& arm, unsigned seed) {
+/// Of an arm whose last motor turns with the joint before; its own joint has this part of the speed.
+Motion coupledMotion(const Model& arm, unsigned seed, double speed) {
   Motion motion = randomMotion(arm.chain, 4000, seed);
+  motion.qd.row(2) *= speed;
+  FastModel(Model(arm.chain)).torquesBatch(motion.q, motion.qd, motion.qdd, motion.tau);
   Eigen::MatrixXd f(motion.tau);
   FastModel(arm).frictionVectorBatch(motion.q, motion.qd, f);
   motion.tau += f + noise(3, 4000, kNoise, seed + 1);
@@ -99,9 +102,10 @@ TEST(ArmFitter, FindsFrictionOfCoupledMotors) {
     law.shift = 0;
     arm.friction.emplace_back(law);
   }
-  const Motion motion = coupledMotion(arm, 1), other = coupledMotion(arm, 9);
   const ArmFitter fitter(threeJointArm(0.6), {}, arm.coupling), uncoupled(threeJointArm(0.6));
-  for (const FrictionTerms terms : {FrictionTerms::kStep, FrictionTerms::kLoad}) {
+  for (const auto& [terms, speed] :
+       {std::pair(FrictionTerms::kStep, 1.0), {FrictionTerms::kLoad, 0.002}}) {
+    const Motion motion = coupledMotion(arm, 1, speed), other = coupledMotion(arm, 9, speed);
     ArmFitOptions options;
     options.terms = terms;
     options.prior_strength = 1;
@@ -112,6 +116,7 @@ TEST(ArmFitter, FindsFrictionOfCoupledMotors) {
       const auto& law = std::get<StepFriction>(arm.friction[j]);
       EXPECT_NEAR(fit.friction[j].fv, law.fv, 0.05 * law.fv) << j;
       EXPECT_NEAR(fit.friction[j].fc, law.fc, 0.05 * law.fc) << j;
+      EXPECT_NEAR(fit.friction[j].width, law.width, 0.1 * law.width) << j;
     }
     EXPECT_EQ(fitter.model(fit).coupling, arm.coupling);
     checkModel(fitter.model(fit));
