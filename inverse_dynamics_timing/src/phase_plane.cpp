@@ -18,10 +18,10 @@ constexpr int kDampedFrom = 10;
 constexpr double kSame = 1e-4;
 
 // Faster than limits of torque allow anywhere, and as good as standing still.
-constexpr double kFastest = 1e12, kSlowest = 1e-12;
+constexpr double kFastest = 1e12, kAtRest = 1e-12;
 // Friction and the torque of motors bend: where lines that touch them leave no room, those that touch
 // them at a slower speed may.
-constexpr double kSlower = 0.1;
+constexpr double kNearer = 0.1;
 
 bool same(double z, double other) { return std::abs(z - other) <= kSame * std::max(z, other); }
 
@@ -81,8 +81,8 @@ bool PhasePlane::backward(Index k, End end, double& x) {
     addInterval(k);
     double to = greatest ? cap : 0.0;
     if (!planes_.approach(to, greatest ? 0.0 : cap)) {
-      if (!greatest || x < kSlowest) return false;
-      x *= kSlower, y *= kSlower;
+      if (!greatest || x < kAtRest) return false;
+      x *= kNearer, y *= kNearer;
       continue;
     }
     const HalfPlanes::Range range = planes_.range(to);
@@ -168,8 +168,8 @@ double PhasePlane::greatest(Index k) {
     }
     double to = z;
     if (!planes_.approach(to, 0.0)) {
-      if (x < kSlowest) return -1.0;
-      x *= kSlower;
+      if (x < kAtRest) return -1.0;
+      x *= kNearer;
       continue;
     }
     const bool done = same(to, here_.z);
