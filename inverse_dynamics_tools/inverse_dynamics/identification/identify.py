@@ -149,7 +149,8 @@ def identify(
     motors, unfitted = _coupling(
         coupling, options.get("gears") or robot.gears, len(fitter.joint_names)
     )
-    fitter = _fitter(robot, description, motors)
+    if motors is not None:
+        fitter = _fitter(robot, description, motors)
     posture = Posture()
     if recordings:
         posture = posture_of(
