@@ -15,7 +15,8 @@ from identified_arms import identification, simulated_torques
 from inverse_dynamics import Solver, evaluate, load_robot, write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.evaluation.causes.rival import PAGE
-from inverse_dynamics.identification.identify import _findings, identify
+from inverse_dynamics.identification.findings import findings_of_errors
+from inverse_dynamics.identification.identify import identify
 from inverse_dynamics.identification.refusals import check_recordings, check_result
 from inverse_dynamics.identification.result import IdentificationError
 
@@ -203,7 +204,7 @@ def test_efforts_that_are_a_small_part_of_the_torques(found):
 def test_a_joint_that_the_description_predicts_better_is_a_finding():
     held = {"urdf": np.array([1.0, 0.93]), "identified": np.array([0.5, 1.06])}
     fitter = SimpleNamespace(joint_names=("a", "b"), changes=("", ""))
-    (finding,) = _findings(fitter, ("link_a", "link_b"), held, ("N m", "N m"))
+    (finding,) = findings_of_errors(fitter, ("link_a", "link_b"), held, ("N m", "N m"))
     assert (finding.kind, finding.joint) == ("worse", "b")
     assert "b: 1.06 N m on blocks held out" in finding.text
     assert "has 0.93" in finding.text

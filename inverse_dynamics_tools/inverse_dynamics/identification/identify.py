@@ -15,7 +15,7 @@ from inverse_dynamics import _core
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
-from inverse_dynamics.evaluation.posture import Posture, locked_joints, posture_of
+from inverse_dynamics.evaluation.posture import locked_joints, posture_of
 from inverse_dynamics.evaluation.turns import on_one_turn
 from inverse_dynamics.identification.baselines import (
     baseline_torques,
@@ -23,10 +23,15 @@ from inverse_dynamics.identification.baselines import (
     root_mean_squares,
 )
 from inverse_dynamics.identification.blocks import Block, blocks_of, moving
+from inverse_dynamics.identification.coupling import coupling_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
 from inverse_dynamics.identification.drive_gains import check_gains, identify_drive_gains
+from inverse_dynamics.identification.findings import (
+    findings_of_errors,
+    gravity_finding,
+    motion_findings,
+)
 from inverse_dynamics.identification.knowledge import (
-    DOUBT,
     assumed,
     independent_samples,
     intervals,
@@ -38,7 +43,6 @@ from inverse_dynamics.identification.refusals import (
     check_accepted,
     check_recordings,
     check_result,
-    mean_unit,
 )
 from inverse_dynamics.identification.result import (
     Finding,
@@ -48,7 +52,6 @@ from inverse_dynamics.identification.result import (
     IdentifiedModel,
     solver_of_text,
 )
-from inverse_dynamics.identification.summary import delay_told
 from inverse_dynamics.identification.uncertainty import (
     band_of,
     factor_of,
@@ -80,8 +83,6 @@ BLOCKS = 5
 
 _FEWEST_BLOCKS = 3
 _SHORTEST_BLOCK = 2.5  # s; accelerations at the ends of a block are poor
-_LITTLE_MOTION = 0.1  # rad or m
-_FEW_SAMPLES = 20
 _BAND_SAMPLES = 5_000
 
 
@@ -144,29 +145,27 @@ def identify(
         robot = load_robot(robot)
     check_accepted(accept)
     description = _description(robot)
+    if not recordings:
+        raise IdentificationError("recordings: expected at least one, got none")
     _check_distinct([*recordings, *(path for path, _ in known_payloads)])
     fitter = _fitter(robot, description)
-    motors, unfitted = _coupling(
+    motors, unfitted = coupling_of(
         coupling, options.get("gears") or robot.gears, len(fitter.joint_names)
     )
-    if motors is not None:
-        fitter = _fitter(robot, description, motors)
-    posture = Posture()
-    if recordings:
-        posture = posture_of(
-            Path(recordings[0]),
-            replace(
-                robot, model=None
-            ),  # the links are the description's, whatever is compared with
-            description,
-            fitter.joint_names,
-            topic=options.get("topic"),
-        )
+    # Links are the description's, whatever model is compared with.
+    posture = posture_of(
+        Path(recordings[0]),
+        replace(robot, model=None),
+        description,
+        fitter.joint_names,
+        topic=options.get("topic"),
+    )
     if posture.parameters:
         robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
+    if posture.parameters or motors is not None:
         fitter = _fitter(robot, description, motors)
     gains: tuple[DriveGain, ...] = ()
-    if known_payloads and recordings:
+    if known_payloads:
         gains = identify_drive_gains(
             recordings, known_payloads, robot, fitter, progress=progress, **options
         )
@@ -177,9 +176,7 @@ def identify(
     evaluations = on_one_turn(
         [evaluate(path, robot, progress=progress, **options) for path in recordings]
     )
-    robot = evaluations[0].robot if evaluations else robot
-    if not evaluations:
-        raise IdentificationError("recordings: expected at least one, got none")
+    robot = evaluations[0].robot
     check_recordings(evaluations, accept)
     plain = replace(robot, plugin=RIGID_BODY, model=None)
     evaluations = [replace(e, measured=torques_with_gravity(e, plain)) for e in evaluations]
@@ -213,47 +210,6 @@ def identify(
     found = replace(found, drive_gains=gains, notes=notes, seconds=seconds)
     check_result(found, accept)
     return found
-
-
-def _coupling(
-    stated: Sequence[float], gears: Sequence[float], joints: int
-) -> tuple[Floats | None, tuple[str, ...]]:
-    """Velocities of motors by those of joints, (n, n), None: friction is of joints; notes."""
-    if stated and len(stated) != joints**2:
-        raise IdentificationError(
-            f"coupling: expected the {joints**2} numbers of a matrix, got {len(stated)}"
-        )
-    numbers = stated or gears
-    if len(numbers) != joints**2:
-        return None, ()  # ratios, or nothing
-    rows = np.reshape(np.array(numbers, dtype=float), (joints, joints))
-    if not stated and np.triu(rows, 1).any():
-        return None, (
-            "gears above the diagonal: friction is fitted to joints, not to shared motors",
-        )
-    _check_coupling(rows, "coupling" if stated else "gears")
-    found: Floats = rows / np.diag(rows)[:, None]
-    return (None if np.array_equal(found, np.eye(joints)) else found), ()
-
-
-def _check_coupling(rows: Floats, option: str) -> None:
-    for row, numbers in enumerate(rows):
-        for column, value in enumerate(numbers):
-            name = f"{option}: row {row + 1}, number {column + 1}"
-            if column == row and (value == 0 or not np.isfinite(value)):
-                raise IdentificationError(
-                    f"{name}: expected a finite number other than 0 on the diagonal, got {value:g}; "
-                    "give 1 for a motor that turns with its joint alone"
-                )
-            if column < row and not np.isfinite(value):
-                raise IdentificationError(
-                    f"{name}: expected a finite number, got {value:g}; give 0 for motors that aren't coupled"
-                )
-            if column > row and value != 0:
-                raise IdentificationError(
-                    f"{name}: expected 0 above the diagonal, got {value:g}; "
-                    "motors may turn with joints before theirs only"
-                )
 
 
 def _fitter(robot: Robot, description: str, coupling: Floats | None = None) -> ArmFitter:
@@ -419,7 +375,7 @@ def _result(
         weights = weights_of_links(described, fitter.prior, later)
         options = _core.ArmFitOptions(chosen.law, prior_strength=chosen.prior_strength)
         known = replace(known, assumed=assumed(fitter, fit, later, options, weights))
-        gravity = (_gravity_finding(robot, weights, first.units),)
+        gravity = (gravity_finding(robot, weights, first.units),)
     factor = np.hstack([factor_of(fitter, fit, later, known, law=chosen.law), known.assumed])
     currents = first.effort.meaning == "current"
     model = _model(fitter, chosen, cut, np.array(first.effort.drive_gains) if currents else None)
@@ -458,8 +414,8 @@ def _result(
         levels=levels,
         findings=(
             *gravity,
-            *_findings(fitter, links, held, first.units),
-            *_motion_findings(fitter, chosen, later, independent),
+            *findings_of_errors(fitter, links, held, first.units),
+            *motion_findings(fitter, chosen, later, independent),
         ),
         # but for the cause of the present model's errors, which the fit removes
         notes=tuple(note for e in evaluations for note in e.notes_without_causes),
@@ -491,83 +447,6 @@ def _held_out_errors(blocks: Sequence[HeldOutBlock]) -> tuple[dict[str, Floats],
         np.abs(e["identified"]) <= b.band[b.counts] for e, b in zip(columns, blocks, strict=True)
     ]
     return root_mean_squares(columns), np.concatenate(within).mean(0)
-
-
-def _findings(
-    fitter: ArmFitter, links: Sequence[str], held: dict[str, Floats], units: Sequence[str]
-) -> tuple[Finding, ...]:
-    found = [
-        Finding("floor", f"link {link}: the description is implausible: the prior has {text}", link)
-        for link, text in zip(links, fitter.changes, strict=True)
-        if text
-    ]
-    found += [
-        Finding(
-            "worse",
-            f"{joint}: {new:.3g} {unit} on blocks held out, where the description without friction has {old:.3g}: "
-            "the motion tells too little of the joint; record one in which it is loaded and turns round more often",
-            joint,
-        )
-        for joint, unit, new, old in zip(
-            fitter.joint_names, units, held["identified"], held["urdf"], strict=True
-        )
-        if new > old
-    ]
-    identified = held["identified"].mean()
-    baseline = min((held[c].mean(), c) for c in held if c != "identified")
-    if identified >= baseline[0]:
-        found.append(
-            Finding(
-                "gain",
-                f"no gain: {identified:.3g} {mean_unit(units)} on blocks held out, where column {baseline[1]} has "
-                f"{baseline[0]:.3g}; stay with it, or record a longer or richer motion",
-            )
-        )
-    return tuple(found)
-
-
-def _gravity_finding(
-    robot: Robot, weights: Sequence[Sequence[Floats]], units: Sequence[str]
-) -> Finding:
-    """What is assumed where efforts lack gravity."""
-    off = np.sqrt(sum((np.concatenate(link) ** 2).mean(axis=0) for link in weights))
-    figures = ", ".join(f"{x:.2g} {unit}" for x, unit in zip(off, units, strict=True))
-    name = "the description" if robot.urdf is None else robot.urdf.name
-    return Finding(
-        "gravity",
-        f"efforts lack gravity: the robot is taken to subtract that of {name}, so masses and first moments are its "
-        "own, but for what the efforts contradict. Errors that its masses share with those in the robot don't show: "
-        f"if each is {100 * DOUBT:g} % off, gravity torques are off by {figures} (RMS by joint), which intervals and "
-        "deviations include",
-    )
-
-
-def _motion_findings(
-    fitter: ArmFitter, chosen: Chosen, blocks: Sequence[Block], independent: Floats
-) -> list[Finding]:
-    """What the motion didn't show, and when the torques were recorded."""
-    found = []
-    if chosen.delay:
-        found.append(
-            Finding(
-                "delay",
-                f"recorded efforts are {delay_told(chosen.delay)} than the states: fits make up "
-                "for it, held-out errors and bands don't, as solvers don't",
-            )
-        )
-    q = np.concatenate([block.q for block in blocks])
-    for j, joint in enumerate(fitter.joint_names):
-        moved = float(np.ptp(q[:, j]))
-        if moved < _LITTLE_MOTION:
-            text = (
-                f"{joint} moves by {moved:.2g} only: its friction and the inertia that it moves are "
-                "those of the prior"
-            )
-            found.append(Finding("motion", text, joint))
-        if independent[j] < _FEW_SAMPLES:
-            text = f"{joint}: errors are worth {independent[j]:.0f} independent samples: record for longer"
-            found.append(Finding("samples", text, joint))
-    return found
 
 
 def _links(description: str, joints: Sequence[str]) -> tuple[str, ...]:

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Warnings about a fit, one sentence each."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.identification.knowledge import DOUBT
+from inverse_dynamics.identification.refusals import mean_unit
+from inverse_dynamics.identification.result import Finding
+from inverse_dynamics.identification.summary import delay_told
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics._core import ArmFitter
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.identification.blocks import Block
+    from inverse_dynamics.identification.cross_validation import Chosen
+    from inverse_dynamics.robot.robots import Robot
+
+_LITTLE_MOTION = 0.1  # rad or m
+_FEW_SAMPLES = 20
+
+
+def findings_of_errors(
+    fitter: ArmFitter, links: Sequence[str], held: dict[str, Floats], units: Sequence[str]
+) -> tuple[Finding, ...]:
+    """What the prior and held-out errors say of links and joints."""
+    found = [
+        Finding("floor", f"link {link}: the description is implausible: the prior has {text}", link)
+        for link, text in zip(links, fitter.changes, strict=True)
+        if text
+    ]
+    found += [
+        Finding(
+            "worse",
+            f"{joint}: {new:.3g} {unit} on blocks held out, where the description without friction has {old:.3g}: "
+            "the motion tells too little of the joint; record one in which it is loaded and turns round more often",
+            joint,
+        )
+        for joint, unit, new, old in zip(
+            fitter.joint_names, units, held["identified"], held["urdf"], strict=True
+        )
+        if new > old
+    ]
+    identified = held["identified"].mean()
+    baseline = min((held[c].mean(), c) for c in held if c != "identified")
+    if identified >= baseline[0]:
+        found.append(
+            Finding(
+                "gain",
+                f"no gain: {identified:.3g} {mean_unit(units)} on blocks held out, where column {baseline[1]} has "
+                f"{baseline[0]:.3g}; stay with it, or record a longer or richer motion",
+            )
+        )
+    return tuple(found)
+
+
+def gravity_finding(
+    robot: Robot, weights: Sequence[Sequence[Floats]], units: Sequence[str]
+) -> Finding:
+    """What is assumed where efforts lack gravity."""
+    off = np.sqrt(sum((np.concatenate(link) ** 2).mean(axis=0) for link in weights))
+    figures = ", ".join(f"{x:.2g} {unit}" for x, unit in zip(off, units, strict=True))
+    name = "the description" if robot.urdf is None else robot.urdf.name
+    return Finding(
+        "gravity",
+        f"efforts lack gravity: the robot is taken to subtract that of {name}, so masses and first moments are its "
+        "own, but for what the efforts contradict. Errors that its masses share with those in the robot don't show: "
+        f"if each is {100 * DOUBT:g} % off, gravity torques are off by {figures} (RMS by joint), which intervals and "
+        "deviations include",
+    )
+
+
+def motion_findings(
+    fitter: ArmFitter, chosen: Chosen, blocks: Sequence[Block], independent: Floats
+) -> list[Finding]:
+    """What the motion didn't show, and when the torques were recorded."""
+    found = []
+    if chosen.delay:
+        found.append(
+            Finding(
+                "delay",
+                f"recorded efforts are {delay_told(chosen.delay)} than the states: fits make up "
+                "for it, held-out errors and bands don't, as solvers don't",
+            )
+        )
+    q = np.concatenate([block.q for block in blocks])
+    for j, joint in enumerate(fitter.joint_names):
+        moved = float(np.ptp(q[:, j]))
+        if moved < _LITTLE_MOTION:
+            text = (
+                f"{joint} moves by {moved:.2g} only: its friction and the inertia that it moves are "
+                "those of the prior"
+            )
+            found.append(Finding("motion", text, joint))
+        if independent[j] < _FEW_SAMPLES:
+            text = f"{joint}: errors are worth {independent[j]:.0f} independent samples: record for longer"
+            found.append(Finding("samples", text, joint))
+    return found
