@@ -17,7 +17,8 @@ import numpy as np
 from inverse_dynamics._core import FastModel
 from inverse_dynamics.errors import RobotError, SolverError
 from inverse_dynamics.robot.chain_geometry import chain_geometry
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.robot.robots import RIGID_BODY
+from inverse_dynamics.robot.solvers import brings_own_model, open_solver
 
 if TYPE_CHECKING:
     from inverse_dynamics._core import Solver
@@ -84,14 +85,18 @@ def arm_model(
     def other() -> Solver:  # one that may be changed, of rigid bodies alone
         return open_solver(replace(robot, friction=False), description)
 
+    @cache
+    def turned() -> Solver:
+        return _of_description(robot, description, other())
+
     def pulled(q: Floats) -> Floats:
-        before, parts = other().gravity, []
+        before, parts = turned().gravity, []
         try:
             for axis in np.eye(3):
-                other().set_gravity(_STANDARD * axis)  # 1 m/s^2 would give a warning
-                parts.append(other().gravity_vector(q) / _STANDARD)
+                turned().set_gravity(_STANDARD * axis)  # 1 m/s^2 would give a warning
+                parts.append(turned().gravity_vector(q) / _STANDARD)
         finally:
-            other().set_gravity(before)
+            turned().set_gravity(before)
         return np.array(parts)
 
     def loaded(q: Floats, qd: Floats, qdd: Floats) -> Floats:
@@ -120,6 +125,18 @@ def arm_model(
         if description:
             model = _with_description(model, robot, solver, description)
     return model
+
+
+def _of_description(robot: Robot, description: str, own: Solver) -> Solver:
+    """The solver to turn gravity of: values identified under one direction needn't hold under another."""
+    if description and brings_own_model(robot):
+        load = {name: v for name, v in robot.parameters.items() if name.startswith("payload.")}
+        changed = replace(robot, plugin=RIGID_BODY, friction=False, parameters=load)
+        with suppress(SolverError, RobotError):  # it needn't have masses, nor these joints
+            found = open_solver(changed, description)
+            if found.joint_names == own.joint_names:
+                return found
+    return own
 
 
 def _with_description(model: ArmModel, robot: Robot, solver: Solver, description: str) -> ArmModel:

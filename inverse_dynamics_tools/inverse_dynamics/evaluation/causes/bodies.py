@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.causes.samples import View
 
 _LENGTH = (8.0, 12.0)  # m/s^2 of gravity, with masses that are wrong by a fifth
-_LEFT = 0.25  # of gravity: masses that are wrong by a tenth leave less
+_ALONG, _ACROSS = 0.25, 0.15  # of gravity: masses off by a tenth leave less, across it next to none
 _LEAST_ANGLE = 4.0  # degrees: below it, flexible bases and wrong centers of mass look like a mount
 _MASS = (0.02, 1.0)  # of the arm's: less is within what makers know of it, no arm lifts more
 _REACH = 1.0  # m between the tip and a load's center of mass
@@ -94,7 +94,9 @@ def _mount(own: Floats, change: Floats, _: Floats) -> Finding | None:
 
 def _subtracted(own: Floats, left: Floats, _: Floats) -> Finding | None:
     """Gravity that is left in efforts without it: the robot subtracts another one, or none."""
-    if np.linalg.norm(left) < _LEFT * np.linalg.norm(own):
+    size = max(float(np.linalg.norm(own)), 1e-12)
+    along = float(left @ own) / size
+    if abs(along) < _ALONG * size and np.linalg.norm(left - along * own / size) < _ACROSS * size:
         return None
     left = np.round(left, 2) + 0.0
     lacking, option = (",".join(f"{x:g}" for x in v) for v in (own - left, left))
@@ -107,6 +109,7 @@ def _subtracted(own: Floats, left: Floats, _: Floats) -> Finding | None:
         f"--effort-is torque --gravity {option}",
         value=[float(x) for x in left],
         shared=left,
+        gain=1.6,  # as much as it is better than masses that are inexact
     )
 
 
