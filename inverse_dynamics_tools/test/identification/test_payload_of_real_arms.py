@@ -17,16 +17,16 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "scripts"))
 from payload_truth import Arm, trials
 
 TRIALS = 100
-MOST_RATIO_OF_CENTER = 4.5  # the UR10's: a wrist creeps with friction that no law of velocity has
 
-# Medians: relative error of the mass, distance of the center of mass [m]; half width of the mass by its error.
+# Medians: relative error of the mass, distance of the center of mass [m]; half widths of mass and
+# center by their errors.
 # The model of the arm is taken for exact, or what it may be wrong by is estimated with the load.
 MOST = {
-    ("panda", 1.0, 4.0, "exact"): (0.015, 0.010, 4.0),  # 30 Hz
-    ("panda", 1.0, 8.0, "exact"): (0.015, 0.007, 4.0),
-    ("panda", 1.0, 8.0, "uncertain"): (0.010, 0.007, 4.0),
-    ("ur10", 5.0, 4.0, "exact"): (0.012, 0.010, 5.0),
-    ("ur10", 5.0, 8.0, "uncertain"): (0.012, 0.010, 4.0),
+    ("panda", 1.0, 4.0, "exact"): (0.015, 0.010, 4.0, 4.0),  # 30 Hz
+    ("panda", 1.0, 8.0, "exact"): (0.015, 0.007, 4.0, 4.0),
+    ("panda", 1.0, 8.0, "uncertain"): (0.010, 0.007, 4.0, 4.0),
+    ("ur10", 5.0, 4.0, "exact"): (0.012, 0.010, 5.0, 4.0),
+    ("ur10", 5.0, 8.0, "uncertain"): (0.012, 0.010, 4.0, 4.5),  # wrist 3 creeps
 }
 
 
@@ -49,9 +49,9 @@ def test_simulated_loads_on_real_residuals(arm_of, name, mass, seconds, model):
     if model == "exact":
         arm = arm.taken_for_exact()
     figures = trials(arm, mass, TRIALS)
-    most_mass, most_center, most_ratio = MOST[name, mass, seconds, model]
+    most_mass, most_center, most_ratio, most_ratio_of_center = MOST[name, mass, seconds, model]
     assert figures.mass <= most_mass, figures
     assert figures.center <= most_center, figures
     assert 0.90 <= figures.coverage <= 0.99, figures
     assert figures.ratio_of_mass <= most_ratio, figures
-    assert figures.ratio_of_center <= MOST_RATIO_OF_CENTER, figures
+    assert figures.ratio_of_center <= most_ratio_of_center, figures
