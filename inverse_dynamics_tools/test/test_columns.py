@@ -80,6 +80,24 @@ def of(*patterns, numbers=range(7)):
             ["elapsed_time", "q_0", "qDot_0", "I_0 (mA)"],
         ),
         (["time_ns", *of("q{}", "v{}", "a{}")], PANDA, ["time_ns", "q0", "v0", "a0"]),
+        (["timestamp", "time", *of("q{}")], PANDA, ["time", "q0"]),
+        (
+            ["duration", *of("qpos[{}]", "qvel[{}]", "ctrl[{}]")],
+            PANDA,
+            ["duration", "qpos[0]", "qvel[0]"],
+        ),
+        (["sec", *of("fb_joints_{}", "planned_joints_{}")], PANDA, ["sec", "fb_joints_0"]),
+        (
+            of("joint_{} [°]", "joint_{} [deg/s]", "joint_{} [Nm]", "joint_mode_{}"),
+            PANDA,
+            ["joint_0 [°]", "joint_0 [deg/s]", "joint_0 [Nm]"],
+        ),
+        (of("actual_q_{}", "current_{}", "torque_{}"), PANDA, ["actual_q_0", "torque_0"]),
+        (
+            [*of("MsrdJntPos_A{}", "MsrdJntTrq_A{}", "ExtnJntTrq_A{}", numbers=range(1, 8))],
+            PANDA,
+            ["MsrdJntPos_A1", "MsrdJntTrq_A1"],
+        ),
     ],
 )
 def test_names_say_what_columns_hold(names, joints, expected):
@@ -105,16 +123,23 @@ def test_what_is_stated_comes_first():
     assert three.units == {"position": "deg"}
     swapped = match_columns(["x", "y"], ["a", "b"], "q=y x")
     assert swapped.columns["position"] == ("y", "x")
+    currents = match_columns(of("tau{}", "cur{}", numbers=range(2)), ["a", "b"], "current=cur*")
+    assert [*currents.columns] == ["current"]
+    left = match_columns(
+        ["left_b_joint_pos", "left_a_joint_pos"], ["a_joint", "b_joint"], "q=left_*_joint_pos"
+    )
+    assert left.columns["position"] == ("left_a_joint_pos", "left_b_joint_pos")
 
 
 @pytest.mark.parametrize(
     ("names", "stated", "expected"),
     [
         (
-            of("pos_mot{}", "pos_se{}", numbers=range(2)),
+            of("l{}_pos", "r{}_pos", "l{}_vel", "r{}_vel", numbers=range(2)),
             "",
-            "f.csv: position: expected one set of columns, got pos_mot0 to pos_mot1, pos_se0 to pos_se1; "
-            "state the right one: --columns 'position=...'",
+            "f.csv: position: expected one set of columns, got l0_pos to l1_pos, r0_pos to r1_pos; velocity: expected "
+            "one set of columns, got l0_vel to l1_vel, r0_vel to r1_vel; state the right one, for example: --columns "
+            "'position=l*_pos, velocity=l*_vel'",
         ),
         (["position.a"], "", "f.csv: joint b: expected a column position.b, got none"),
         (

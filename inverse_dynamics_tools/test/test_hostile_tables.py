@@ -52,7 +52,7 @@ HOSTILE = {
         ":90000: column 3 (velocity.a): expected a",
     ),
     "a column too many": (row("1,2"), ":3: expected 4 columns, as the header has, got 5"),
-    "a cut row": (HEADER + ROW + "0.01,1", ":3: expected 4 columns, as the header has, got 2"),
+    "a cut row": (HEADER + ROW + "0.01,1\n", ":3: expected 4 columns, as the header has, got 2"),
     "a row of blanks and a comma": (
         HEADER + ROW + " , \n",
         ":3: expected 4 columns, as the header",
@@ -75,7 +75,7 @@ HOSTILE = {
     "escapes in names": ("time,\x1b[31mred\n0,1\n", ": expected columns of position"),
     "a joint of 100 kB": (
         HEADER.replace(".a", "." + "x" * 100_000) + ROW,
-        ": expected columns of position for the joints a, got time, position.xxx",
+        ": expected columns of position and effort for 1 joint, a, got time, position.xxx",
     ),
     "no time": (
         HEADER[5:] + "1,2,3\n" * 2,

@@ -189,7 +189,12 @@ def test_currents_have_a_name_of_their_own(file):
     assert log.effort_is == read_recording(file).effort_is == "current"
     assert log.notes == ()
     both = "expected efforts or currents, got both: effort.a and current.a; state those to compare"
-    fails(file, header.replace("position.b", "effort.a") + rows, both)
+    file.write_text(header.replace("position.b", "effort.a") + rows)
+    with pytest.raises(BagError, match=both):
+        read_recording(file, ("a",), form=LogFormat("tau=effort.a, i=current.a"))
+    assert read_recording(file, ("a",)).notes == (
+        "3 columns left out: current.a, velocity.b, current.b",
+    )
     fails(
         file,
         header.replace("current.a", "effort.a") + rows,
@@ -234,7 +239,12 @@ def test_a_unit_that_only_the_owner_knows_is_asked_for(file):
         '"t","q1","tau1"\n"0","1","2"\n"0,5","3","4"\n',
         "t,q1,tau1\nms,rad,mNm\n0,1,2000\n500,3,4000\n",
         "stamp.sec,stamp.nanosec,q1,tau1\n7,0,1,2\n7,500000000,3,4\n",
-        "t,q1,tau1\n0,1,2\n0.25,,7\n0.3,nan,7\n0.5,3,4\n",
+        "t,q1,tau1\n0,1,2\n0.25,,7\n0.3,nan,7\n0.4,7,N/A\n0.5,3,4\n0.6,7",
+        "Log of an arm\n2 axes,,\n% rate: 2 Hz\n\nt;q1;tau1\ns;rad;Nm\n0;1;2\n0.5;3;4\n",
+        "time,joint1_pos,joint1_torque\n2026-01-31T12:30:00,1,2\n2026-01-31T12:30:00.5,3,4\n",
+        "time,q1,tau1\n12:30:00,1,2\n12:30:00.500,3,4\n",
+        't,q,tau,x\n0,[1],(2),"[8, 9]"\n0.5,[3],(4),"[8, 9]"\n',
+        "7,0,base,a,1,7,2\n7,500000000,base,a,3,7,4\n",
     ],
 )
 def test_a_table_is_read_as_programs_write_it(file, text):
@@ -245,10 +255,26 @@ def test_a_table_is_read_as_programs_write_it(file, text):
     np.testing.assert_array_equal(motion.numbers["effort"][:, 0], [2, 4])
 
 
-def test_what_is_not_read_is_refused_with_the_command_that_converts_it(tmp_path):
-    file = tmp_path / "log.xlsx"
-    file.write_bytes(b"PK")
-    with pytest.raises(BagError, match=r"got \.xlsx; convert it: python -c .*read_excel.*log\.csv"):
+@pytest.mark.parametrize(
+    ("name", "content", "expected"),
+    [
+        ("log.xlsx", b"PK", r"got \.xlsx; convert it: python -c .*read_excel.*'log\.parquet'"),
+        ("log.h5", b"", r"got \.h5; convert it: python -c .*h5py\.File\('.*log\.h5'\).*'log\.npz'"),
+        ("log.csv.gz", b"", r"convert it: gunzip -k .*log\.csv\.gz"),
+        (
+            "log.csv",
+            b"\x1f\x8b\x80",
+            "isn't text in UTF-8.* it is compressed: unpack it with gunzip",
+        ),
+        ("log.csv", b"q [\xb0]", "isn't text in UTF-8.*iconv -f LATIN1 -t UTF-8 '.*log.csv'"),
+    ],
+)
+def test_what_is_not_read_is_refused_with_the_command_that_converts_it(
+    tmp_path, name, content, expected
+):
+    file = tmp_path / name
+    file.write_bytes(content)
+    with pytest.raises(BagError, match=expected):
         read_recording(file, ("a",))
 
 
@@ -256,10 +282,15 @@ def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
     fails(
         file,
         "timestamp target_q_0 target_qd_0 target_current_0\n0 0 0 0\n",
-        "expected columns of position for the joints a, got timestamp, target_q_0, target_qd_0",
+        "expected columns of position and effort for 1 joint, a, got timestamp, target_q_0, target_qd_0",
     )
     header = "timestamp actual_q_0 actual_q_1 actual_qd_0 actual_current_0\n"
-    fails(file, header, "expected columns of position for the joints a, got timestamp, actual_q_0")
+    fails(
+        file,
+        header,
+        "expected columns of position for 1 joint, a, got 2 columns, actual_q_0 to actual_q_1; torques depend on them; "
+        "state them with --columns 'position=actual_q_*' (* is",
+    )
 
 
 @pytest.mark.parametrize(
@@ -267,18 +298,20 @@ def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
     [
         (
             "time,foo\n0,1\n",
-            "expected columns of position for the joints a, got time, foo; torques",
+            "expected columns of position and effort for 1 joint, a, got time, foo; torques",
         ),
         (HEADER.replace("time", "x") + ROWS, "expected a column of time [s], got x, position.a"),
-        (HEADER.replace("effort.a", "x") + ROWS, "expected columns of effort for the joints a"),
+        (HEADER.replace("effort.a", "x") + ROWS, "expected columns of effort for 1 joint, a, got"),
         (HEADER.replace("effort.a", "x") + ROWS, "`ids torques` computes them"),
         (
             HEADER.replace(".a", ".b") + ROWS,
-            "expected columns of position for the joints a, got time",
+            "expected columns of position and effort for 1 joint, a, got time",
         ),
         (HEADER + "0,1,2,3\n8,1,2,3\n", "expected seconds, got steps of 8: are they ms?"),
-        (HEADER + "0,1,2,3\n2000,1,2,3\n", "are they us? Then state --scale time=us"),
-        (HEADER + "0,1,2,3\n8e6,1,2,3\n", "are they ns? Then state --scale time=ns"),
+        (
+            HEADER + "0,1,,3\n1,1,,3\n",
+            "got 0; 2 have an empty field: no number is in the columns velocity.a",
+        ),
         (HEADER + "1e10,1,2,3\n1e10,1,2,3\n", "expected seconds, got 1e+10; count from"),
     ],
 )
@@ -443,6 +476,21 @@ def test_a_table_of_rostopic_has_its_joints_by_name(file):
     np.testing.assert_array_equal(log.q, [[2, 1], [2, 1]])
     np.testing.assert_array_equal(log.effort, [[6, 5], [7, 5]])
     assert log.stamps[1] - log.stamps[0] == pytest.approx(10_000_000, abs=300)
+
+
+def test_rows_out_of_order_are_sorted(file):
+    file.write_text(HEADER + "".join(f"{0.1 * k:.1f},{k},{k},0\n" for k in [3, 1, 0, 4, 2]))
+    log = read_recording(file, ("a",))
+    np.testing.assert_array_equal(log.q[:, 0], [0, 1, 2, 3, 4])
+    assert log.notes == ("rows are sorted by time",)
+
+
+@pytest.mark.parametrize(("step", "unit"), [(8e6, "ns"), (8e3, "us")])
+def test_time_that_is_not_in_seconds_is_converted(file, step, unit):
+    file.write_text(HEADER + "".join(f"{step * k:.0f},{k},{k},0\n" for k in range(4)))
+    log = read_recording(file, ("a",))
+    np.testing.assert_allclose(log.time, [0, 0.008, 0.016, 0.024])
+    assert log.notes == (f"time is taken for {unit}, as no recording has such steps of seconds",)
 
 
 def test_episodes_follow_each_other(file):

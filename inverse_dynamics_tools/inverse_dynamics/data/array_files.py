@@ -31,6 +31,11 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
 
 _INFO = "meta/info.json"  # of a LeRobot data set
+# The command that makes an .npz file of one in HDF5.
+HDF5 = (
+    "python -c \"import h5py, numpy; d = {{}}; h5py.File('{path}').visititems(lambda k, v: d.update({{k: v[()]}}) if "
+    "hasattr(v, 'shape') else None); numpy.savez('{stem}.npz', **d)\""
+)
 
 
 class ArrayTable:
@@ -148,7 +153,8 @@ def _of_mat(path: Path) -> Iterator[tuple[str, Any]]:
     try:
         found = loadmat(path, squeeze_me=True, struct_as_record=False)
     except NotImplementedError as error:
-        raise ValueError("it is of version 7.3; in MATLAB: save(FILE, '-v7')") from error
+        command = HDF5.format(path=path, stem=path.stem)
+        raise ValueError(f"it is of version 7.3; save it with '-v7', or: {command}") from error
     for name, value in found.items():
         if not name.startswith("__"):
             yield from _of_structure(name, value)

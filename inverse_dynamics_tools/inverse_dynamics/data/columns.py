@@ -16,6 +16,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from dataclasses import dataclass, field
+from itertools import takewhile
 from typing import TYPE_CHECKING, NamedTuple
 
 from inverse_dynamics.base.wording import listed, shown
@@ -31,9 +32,9 @@ QUANTITIES = (POSITION, VELOCITY, ACCELERATION, EFFORT, CURRENT)
 # Words that say a quantity. Those of the second row do so only beside no word of the first row:
 # `current_q_0` and `state_tau_0` are a position and an effort.
 _WORDS = {
-    POSITION: "position positions pos q angle angles theta jpos",
-    VELOCITY: "velocity velocities vel qd dq qdot speed speeds omega jvel",
-    ACCELERATION: "acceleration accelerations acc accel qdd ddq qddot",
+    POSITION: "position positions pos q angle angles theta jpos qpos",
+    VELOCITY: "velocity velocities vel qd dq qdot speed speeds omega jvel qvel",
+    ACCELERATION: "acceleration accelerations acc accel qdd ddq qddot qacc",
     EFFORT: "effort efforts eff torque torques torq tau trq moment moments",
 }
 _WEAK_WORDS = {
@@ -42,17 +43,18 @@ _WEAK_WORDS = {
     VELOCITY: "v",
     ACCELERATION: "a",
 }
-_TIME = "time t timestamp timestamps stamp ts secs seconds"
-_TIME_WORDS = frozenset(_TIME.split())
+# The first ones are preferred.
+_TIME = "time t timestamp timestamps stamp stamps ts secs seconds sec duration"
+_TIME_WORDS = (*_TIME.split(),)
 # These words say nothing: a name that has fewer others is preferred.
 _SAYING_NOTHING = (
-    "actual act measured meas joint joints j axis a state states robot arm field data observation header "
-    "cont abs rec real elapsed sim sample relative from start"
+    "actual act measured meas msrd joint joints jnt j axis a state states robot arm field data observation header "
+    "cont abs rec real elapsed sim sample relative from start fb feedback"
 )
 _NEUTRAL = frozenset(_SAYING_NOTHING.split())
 # Not what the arm did, or not what its motors did.
 _PASSED_OVER = (
-    "target desired des ref reference cmd command commanded goal setpoint action ext external error err "
+    "target desired des ref reference cmd command commanded goal setpoint planned action ext extn external error err "
     "limit limits max min std temperature temp tcp ee cartesian cart tool wrench model predicted"
 )
 _OTHER = frozenset(_PASSED_OVER.split())
@@ -90,6 +92,16 @@ _UNITS_OF_NAMES = {
     CURRENT: ("ma",),
 }
 _PER_TIME = frozenset({"per", "s", "s2", "sec", "second"})
+# In names without any other word than neutral ones, `joint_1 [deg]`, units say the quantity, or the joint alone.
+_BARE_WORDS = (
+    {
+        EFFORT: frozenset(_UNITS_OF_NAMES[EFFORT]),
+        VELOCITY: _PER_TIME | {"rpm"},
+        CURRENT: frozenset(_UNITS_OF_NAMES[CURRENT]),
+    },
+    {POSITION: frozenset(("joint", "joints", "jnt", "j", "axis", *_UNITS_OF_NAMES[POSITION]))},
+)
+_BARE = _NEUTRAL.union({"*"}, *_BARE_WORDS[0].values(), *_BARE_WORDS[1].values())
 # Units whose factor only the owner knows.
 UNKNOWN_UNITS = frozenset({"percent", "permille", "counts", "ticks", "increments", "pulses"})
 
@@ -106,6 +118,18 @@ class Family(NamedTuple):
     rank: tuple[int, ...]  # the least is the best
     columns: tuple[str, ...]  # in the order of the joints
     unit: str  # that the names state; "": none
+
+    @property
+    def pattern(self) -> str:
+        """What the names have in common, with `*` in the place of the joint."""
+        start = _common_start(self.columns)
+        end = _common_start([name[len(start) :][::-1] for name in self.columns])[::-1]
+        return f"{start}*{end}"
+
+
+def _common_start(names: Sequence[str]) -> str:
+    letters = takewhile(lambda each: len({*each}) == 1, zip(*names, strict=False))
+    return "".join(each[0] for each in letters)
 
 
 @dataclass(frozen=True)
@@ -129,7 +153,7 @@ class Matched:
     def text(self) -> str:
         """One line that says which columns were taken for what."""
         return "; ".join(
-            f"{quantity}: {_first_to_last(names)}"
+            f"{quantity}: {first_to_last(names)}"
             + (f" [{self.units[quantity]}]" if quantity in self.units else "")
             for quantity, names in self.columns.items()
         )
@@ -150,30 +174,36 @@ def match_columns(
     names separated by spaces, or numbers of columns from 1 on, `2-7`.
     where: the file, for errors. quantities: which of QUANTITIES to look for.
 
-    What isn't found is left out; the caller knows what it needs. Raises BagError: a pattern that fits
-    nothing, two sets of columns that fit as well, some joints of a quantity missing.
+    What isn't found is left out; the caller knows what it needs. Currents are left out where there are efforts,
+    unless they are stated. Raises BagError: a pattern that fits nothing, two sets of columns that fit as well, some
+    joints of a quantity missing.
     """
     given = dict(stated_columns(stated, where))
     joints = tuple(joints) or _joints_of(names, given)
     columns: dict[str, tuple[str, ...]] = {}
     units: dict[str, str] = {}
     time = _chosen_time(given[TIME], names) if TIME in given else time_columns(names)
-    if len(time) > 1:
-        raise _ambiguous(where, TIME, time)
     if time:
         _known(names, time, where, f"{TIME}=")
         columns[TIME] = (time[0], *_nanoseconds_beside(time[0], names))
         units[TIME] = _unit(TIME, _words(time[0]))
     found = _families(names, joints)
+    unclear: dict[str, list[Family]] = {}
     for quantity in quantities:
         if quantity in given:
             columns[quantity] = _matching(given[quantity], names, joints, where)
             units[quantity] = _unit(quantity, _words(columns[quantity][0]))
             continue
+        if quantity == (EFFORT if CURRENT in given else CURRENT if EFFORT in columns else ""):
+            continue
         _refuse_incomplete(names, joints, quantity, where)
-        if best := _best(found[quantity], quantity, where):
-            columns[quantity] = best.columns
-            units[quantity] = best.unit
+        if best := _best(found[quantity]):
+            columns[quantity] = best[0].columns
+            units[quantity] = best[0].unit
+        if len(best) > 1:
+            unclear[quantity] = best
+    if unclear:
+        raise _ambiguous(where, unclear)
     return Matched(joints, columns, {kind: unit for kind, unit in units.items() if unit})
 
 
@@ -194,8 +224,9 @@ def named_positions(names: Sequence[str], joints: Sequence[str]) -> dict[str, tu
 def _words(name: str) -> tuple[str, ...]:
     """Words and numbers of a name: `Joint1_Pos` has joint, 1, pos."""
     name = re.sub(r"(?<![A-Za-z])(mNm|kNm|mA|q_?[dD]{1,2}ot)(?![a-z])", _one_word, name)
+    name = name.replace("%", " percent ").replace("°", " deg ")
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[^\W\d_])(?=\d)|(?<=\d)(?=[^\W\d_])", " ", name)
-    return tuple(re.findall(r"[^\W\d_]+|\d+", apart.replace("%", " percent ").lower()))
+    return tuple(re.findall(r"[^\W\d_]+|\d+", apart.lower()))
 
 
 def _one_word(found: re.Match[str]) -> str:
@@ -212,6 +243,17 @@ def _quantity(words: Sequence[str]) -> str | None:
         }
         if said:
             return said.pop() if len(said) == 1 else None
+    return _quantity_of_bare(words)
+
+
+def _quantity_of_bare(words: Sequence[str]) -> str | None:
+    """What a unit beside a joint's name or number says, or a word for the joint alone."""
+    if "*" not in words or not _BARE.issuperset(words):
+        return None
+    for vocabulary in _BARE_WORDS:
+        for kind, known in vocabulary.items():
+            if not known.isdisjoint(words):
+                return kind
     return None
 
 
@@ -295,22 +337,38 @@ def _places(
 
 def quantities_named(names: Sequence[str], file: str) -> set[str]:
     """Quantities that any of the names says, or the file's name together with it."""
-    for prefix in ("", f"{file}."):
-        found = {kind for name in names if (kind := _quantity(_words(f"{prefix}{name}")))}
+    words = [tuple("*" if w.isdecimal() else w for w in _words(name)) for name in names]
+    telling = [each for each in words if not _BARE.issuperset(each)]
+    for some in (telling, [(*_words(file), *each) for each in words], words):
+        found = {kind for each in some if (kind := _quantity(each))}
         if found:
             return found
     return set()
 
 
+def numbered(names: Sequence[str]) -> dict[str, Family]:
+    """By quantity, the best columns that differ in a number, however many they are."""
+    sets = defaultdict(list)
+    for name in names:
+        for kind, pattern, _ in _places(name, {}):
+            sets[kind, pattern].append(name)
+    found: dict[str, Family] = {}
+    for (kind, pattern), columns in sets.items():
+        if quantity := _quantity(pattern):
+            family = Family(_rank(kind, quantity, pattern), (*columns,), "")
+            found[quantity] = min(found.get(quantity, family), family)
+    return found
+
+
 def time_columns(names: Sequence[str]) -> list[str]:
-    """Columns that are as good as any for the time."""
-    known = _TIME_WORDS.union(_UNITS_OF_NAMES[TIME])
-    ranked = defaultdict(list)
+    """The column that is best for the time, if there is any: of the fewest words, of the first of _TIME_WORDS."""
+    known = {*_TIME_WORDS, *_UNITS_OF_NAMES[TIME]}
+    ranked = []
     for name in names:
         words = [word for word in _words(name) if word not in _NEUTRAL]
-        if _TIME_WORDS.intersection(words) and known.issuperset(words):
-            ranked[len(_words(name))].append(name)
-    return [*dict.fromkeys(ranked[min(ranked)])] if ranked else []
+        if known.issuperset(words) and (said := [w for w in _TIME_WORDS if w in words]):
+            ranked.append((len(_words(name)), _TIME_WORDS.index(said[0]), name))
+    return [min(ranked)[2]] if ranked else []
 
 
 def _nanoseconds_beside(time: str, names: Sequence[str]) -> list[str]:
@@ -327,21 +385,18 @@ def _chosen_time(pattern: str, names: Sequence[str]) -> list[str]:
     return [names[int(pattern) - 1]] if by_number else [pattern]
 
 
-def _best(families: list[Family], quantity: str, where: str) -> Family | None:
-    if not families:
-        return None
-    least = min(family.rank for family in families)
-    best = [family for family in families if family.rank == least]
-    if len(best) > 1:
-        raise _ambiguous(where, quantity, [_first_to_last(family.columns) for family in best])
-    return best[0]
+def _best(families: list[Family]) -> list[Family]:
+    least = min((family.rank for family in families), default=())
+    return [family for family in families if family.rank == least]
 
 
-def _ambiguous(where: str, quantity: str, candidates: Sequence[str]) -> BagError:
-    return BagError(
-        f"{where}: {quantity}: expected one set of columns, got {listed(candidates)}; state the right one: "
-        f"--columns '{quantity}=...'"
+def _ambiguous(where: str, unclear: dict[str, list[Family]]) -> BagError:
+    kinds = "; ".join(
+        f"{kind}: expected one set of columns, got {listed([first_to_last(f.columns) for f in families])}"
+        for kind, families in unclear.items()
     )
+    first = ", ".join(f"{kind}={families[0].pattern}" for kind, families in unclear.items())
+    return BagError(f"{where}: {kinds}; state the right one, for example: --columns '{first}'")
 
 
 def _refuse_incomplete(
@@ -370,7 +425,8 @@ def _joints_of(names: Sequence[str], given: dict[str, str]) -> tuple[str, ...]:
     return tuple(map(str, range(largest)))
 
 
-def _first_to_last(names: Sequence[str]) -> str:
+def first_to_last(names: Sequence[str]) -> str:
+    """A few words for columns that follow each other."""
     return names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
 
 
@@ -379,7 +435,7 @@ def listed_columns(names: Sequence[str], most: int = 40) -> str:
     runs: dict[str, list[str]] = defaultdict(list)
     for name in names:
         runs[re.sub(r"\d+", "*", name)].append(name)
-    return listed([_first_to_last(run) for run in runs.values()], most)
+    return listed([first_to_last(run) for run in runs.values()], most)
 
 
 # ---- what users state ----------------------------------------------------------------------------
@@ -427,9 +483,10 @@ def _of_wildcard(pattern: str, names: Sequence[str], joints: Sequence[str]) -> l
     """By the joints' names, else by number: the first ones, if there are more than joints."""
     form = re.compile("(.+)".join(map(re.escape, pattern.split("*", 1))))
     fits = {found[1]: name for name in names if (found := form.fullmatch(name))}
-    words = {_words(key): name for key, name in fits.items()}
-    if all(_words(joint) in words for joint in joints):
-        return [words[_words(joint)] for joint in joints]
+    called = _called(joints)
+    named = {called.get(_words(key)): name for key, name in fits.items()}
+    if named.keys() >= {*joints}:
+        return [named[joint] for joint in joints]
     numbered = sorted((int(key), name) for key, name in fits.items() if key.isdecimal())
     return [name for _, name in numbered][: len(joints)]
 

@@ -2,9 +2,9 @@
 """Tables of numbers in text files: a header line, then one row per line.
 
 Between columns: comma, semicolon, tab or spaces. Decimals have a point, or a comma where no comma lies
-between columns. Lines that begin with `#` or `sep=` before the header are passed over; a line of units
-below it is added to the names. Columns that aren't asked for may hold anything; rows with an empty field,
-or nan, in a column that is are left out and counted.
+between columns. Comments and titles before the header are passed over; a line of units below it is added to
+the names. Dates and times of day are seconds. Columns that aren't asked for may hold anything; rows with an
+empty field, nan, or null in a column that is are left out and counted, and so is a last line that is cut off.
 
 Without a header, or with one that names fewer columns than there are, columns are called by their number,
 from 1 on.
@@ -15,6 +15,7 @@ from __future__ import annotations
 import csv
 import os
 from contextlib import suppress
+from datetime import datetime, timezone
 from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
@@ -31,7 +32,11 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
 
-_SUFFIXES = (".csv", ".tsv", ".txt")
+_SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".log", ".asc")
+_COMMENT = ("#", "% ")
+_MOST_ABOVE = 50  # lines before the first row
+_EMPTY = frozenset(("", "nan", "-nan", "na", "n/a", "none", "null"))
+_UNPACKED_BY = {b"\x1f\x8b": "gunzip", b"PK\x03\x04": "unzip"}  # by the first bytes
 _BLOCK = 2**20  # characters read together
 _LONGEST_HEADER = 2**22  # characters
 
@@ -49,59 +54,66 @@ class CsvTable:
         self.incomplete = 0  # rows left out so far
         try:
             with self._open() as file:
-                comments, lines = self._beginning(file)
-            self._name_columns(comments, lines)
+                above, row = self._beginning(file)
+            self._name_columns(above, row)
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise self._unreadable(error) from error
 
-    def _beginning(self, file: TextIO) -> tuple[list[str], dict[int, str]]:
-        """Comments, and the first three other lines by number."""
-        comments: list[str] = []
-        lines: dict[int, str] = {}
+    def _beginning(self, file: TextIO) -> tuple[list[str], str]:
+        """Lines above the first row, and that row: the first line of more numbers than words, else the second line."""
+        lines: list[tuple[int, str]] = []
         number = 0
-        while len(lines) < 3 and (text := file.readline(_LONGEST_HEADER)):
+        while len(lines) < _MOST_ABOVE and (text := file.readline(_LONGEST_HEADER)):
             number += 1
             if len(text) >= _LONGEST_HEADER:
                 raise BagError(
                     f"{self.path}:{number}: expected a header line of at most {_LONGEST_HEADER} "
                     "characters, got a longer one; is it a table of numbers?"
                 )
-            if not lines and text.lower().startswith(("#", "sep=")):
-                comments.append(text.lstrip("# ").strip())
-            elif not text.isspace():
-                lines[number] = text.strip("\r\n")
-        return comments, lines
-
-    def _name_columns(self, comments: list[str], lines: dict[int, str]) -> None:
-        """Find the names, and the line of the first row."""
-        found = list(lines.values()) or comments[-1:]
-        if not found:
+            if _is_row(text):
+                self._lines_before = number - 1
+                return [line for _, line in lines], text.strip("\r\n")
+            if not text.isspace():
+                lines.append((number, text.strip("\r\n")))
+        if not lines:
             raise BagError(f"{self.path}: is empty; expected a header line and rows of numbers")
-        self._delimiter = _delimiter(found[0])
-        header, *rows = map(self._fields, found)
+        self._lines_before = lines[:2][-1][0] - (len(lines) > 1)
+        return [lines[0][1]], lines[1][1] if len(lines) > 1 else ""
+
+    def _name_columns(self, above: list[str], row: str) -> None:
+        """Find the names: in the last line that has as many fields as the row, but for one of units below it."""
+        comments = [text.lstrip("#% ").strip() for text in above if text.startswith(_COMMENT)]
+        plain = [text for text in above if not text.startswith(_COMMENT)]
+        fitting = [text for text in plain if _fits(text, row)][-2:]
+        fitting = fitting or [text for text in comments if _fits(text, row)][-1:]
+        found = fitting or plain[-1:] or comments[-1:]
+        self._delimiter = _delimiter(found[0] if found else row)
+        header, *units = [_split(line, self._delimiter) for line in found or [""]]
+        names = [name.strip() for name in header]
+        for line in units:
+            names = [f"{n} {unit}".strip() for n, unit in zip(names, line, strict=False)]
+        fields = _split(row, self._delimiter)
+        if len(fields) == len(names):
+            names = [
+                each
+                for name, text in zip(names, fields, strict=True)
+                for each in _cells(name, text)
+            ]
+        fields = self._fields(row)
+        columns = len(fields) - (not fields[-1].strip()) if row else len(names)
         self.unnamed = ""  # why the file doesn't name its columns
-        if _numbers_in(header) == len(header):
-            rows.insert(0, header)
-            header = self._fields(comments[-1]) if comments else []  # np.savetxt() has it there
+        if not found:
             self.unnamed = (
                 "expected a header line that names the columns, got numbers, "
-                f"{counted(len(rows[0]), 'column')}, {harmless(', '.join(rows[0][:4]))}, ..."
+                f"{counted(columns, 'column')}, {harmless(', '.join(fields[:4]))}, ..."
             )
-        names = [name.strip() for name in header]
-        if len(rows) == 2 and not _numbers_in(rows[0]) and _numbers_in(rows[1]):
-            units = rows.pop(0)
-            names = [f"{n} {unit}".strip() for n, unit in zip(names, units, strict=False)]
-        columns = len(rows[0]) - (not rows[0][-1].strip()) if rows else len(names)
-        if len(names) >= columns > 0:
-            self.unnamed = ""
-            names = names if any(names[columns:]) else names[:columns]
-        elif names:
+        elif len(names) < columns:
             self.unnamed = (
                 f"expected a header with {counted(columns, 'name')}, as the first row has columns, got "
                 f"{len(names)}"
             )
+        names = names if any(names[columns:]) else names[:columns]
         self.names = tuple(names if not self.unnamed else map(str, range(1, columns + 1)))
-        self._lines_before = [0, *lines][-len(rows)] - 1 if rows else max(lines, default=0)
 
     def read(self, columns: Sequence[str], progress: Progress = no_progress) -> Floats:
         """(N, columns) numbers, all of them finite. Raises BagError."""
@@ -141,9 +153,10 @@ class CsvTable:
         return self.path.open(encoding="utf-8-sig")
 
     def _fields(self, line: str) -> list[str]:
-        if '"' not in line:
-            return line.split(self._delimiter)
-        return next(csv.reader([line], delimiter=self._delimiter or " ", skipinitialspace=True))
+        fields = _split(line, self._delimiter)
+        if "[" not in line and "(" not in line:
+            return fields
+        return [number for field in fields for number in _numbers_of(field)]
 
     def _numbers(self, lines: list[str], first: int, where: list[int]) -> Floats:
         """Numbers of complete rows; first: the number of the first line in the file."""
@@ -165,6 +178,8 @@ class CsvTable:
     def _row(self, text: str, line: int, where: list[int]) -> list[float | None]:
         """Numbers of a line; None: its field is empty."""
         fields, expected = self._fields(text), len(self.names)
+        if len(fields) < expected and not text.endswith("\n"):  # the recorder was stopped
+            return [None] * len(where)
         if len(fields) < expected or "".join(fields[expected:]).strip():
             raise BagError(
                 f"{self.path}:{line}: expected {counted(expected, 'column')}, as the header has, got "
@@ -174,7 +189,7 @@ class CsvTable:
 
     def _number(self, text: str, line: int, column: int) -> float | None:
         text = text.strip(ASCII_SPACE)
-        if text.lower() in ("", "nan"):
+        if text.lower() in _EMPTY:
             return None
         finite = " finite" if NOT_FINITE.fullmatch(text) else ""
         with suppress(ValueError):
@@ -182,6 +197,8 @@ class CsvTable:
             if np.isfinite(number):
                 return number
             finite = " finite"
+        with suppress(ValueError):
+            return _seconds(text)
         raise BagError(
             f"{self.path}:{line}: column {column + 1} ({harmless(self.names[column])}): expected a{finite} "
             f"number, got {shown(text)}"
@@ -193,10 +210,62 @@ class CsvTable:
                 f"{self.path}: no such file; expected a table of numbers in text, or name a "
                 "rosbag2 recording"
             )
-        why = "it isn't text in UTF-8"
         if not isinstance(error, UnicodeDecodeError):
             why = getattr(error, "strerror", None) or str(error)
-        return BagError(f"{self.path}: can't be read ({why}); expected a table of numbers in text")
+            return BagError(
+                f"{self.path}: can't be read ({why}); expected a table of numbers in text"
+            )
+        with self.path.open("rb") as file:
+            start = file.read(4)
+        code = "UTF-16" if start[:2] in (b"\xff\xfe", b"\xfe\xff") else "LATIN1"
+        convert = f"if it is text, convert it: iconv -f {code} -t UTF-8 '{self.path}' > NEW.csv"
+        if program := next((p for magic, p in _UNPACKED_BY.items() if start.startswith(magic)), ""):
+            convert = f"it is compressed: unpack it with {program}"
+        return BagError(
+            f"{self.path}: can't be read (it isn't text in UTF-8); expected a table of numbers in text; {convert}"
+        )
+
+
+def _seconds(text: str) -> float:
+    """Seconds of a date, `2026-01-31T12:30:00.5`, since 1970, or of a time of day. Raises ValueError."""
+    if ":" not in text:
+        raise ValueError(text)
+    date = datetime.fromisoformat(text if "-" in text[:8] else f"1970-01-01T{text}")
+    return (date if date.tzinfo else date.replace(tzinfo=timezone.utc)).timestamp()
+
+
+def _is_row(text: str) -> bool:
+    """Whether more fields hold numbers than words."""
+    fields = [field for field in text.split(_delimiter(text)) if field.strip(' "\r\n')]
+    return 2 * _numbers_in([field.strip('"') for field in fields]) > len(fields)
+
+
+def _fits(header: str, row: str) -> bool:
+    """Whether the line has as many fields as the row, not most of them empty."""
+    mark = _delimiter(header)
+    fields = [_split(line, mark) for line in (header, row)]
+    widths = [len(each) - (not each[-1].strip()) for each in fields if each]
+    return widths[:1] == widths[1:] and 2 * sum(map(bool, map(str.strip, fields[0]))) > widths[0]
+
+
+def _numbers_of(field: str) -> list[str]:
+    """Those of a list, `[1, 2]`, `(1, 2)` or `[1 2]`, which programs write into one field; else the field."""
+    inside = field.strip()
+    if inside[:1] not in ("[", "(") or inside[-1:] not in ("]", ")"):
+        return [field]
+    return inside[1:-1].replace(",", " ").split()
+
+
+def _cells(name: str, field: str) -> list[str]:
+    """Names of the columns of a field: `q[0]`, `q[1]`, ... of a list of numbers."""
+    numbers = _numbers_of(field)
+    return [name] if numbers == [field] else [f"{name}[{k}]" for k in range(len(numbers))]
+
+
+def _split(line: str, mark: str | None) -> list[str]:
+    if '"' not in line:
+        return line.split(mark)
+    return next(csv.reader([line], delimiter=mark or " ", skipinitialspace=True))
 
 
 def _delimiter(line: str) -> str | None:
@@ -208,10 +277,11 @@ def _delimiter(line: str) -> str | None:
 
 
 def _numbers_in(fields: Sequence[str]) -> int:
-    return sum(map(_is_number, fields))
+    return sum(map(is_number, fields))
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether a field holds one, finite or not."""
     try:
         decimal(text.strip().replace(",", "."))
     except ValueError:

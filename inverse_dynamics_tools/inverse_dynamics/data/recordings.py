@@ -18,6 +18,7 @@ import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data import bags, joint_trajectories
+from inverse_dynamics.data.array_files import HDF5
 from inverse_dynamics.data.columns import ACCELERATION, EFFORT, POSITION, VELOCITY
 from inverse_dynamics.data.joint_log import JointLog, check_clock
 from inverse_dynamics.data.ros1_bags import is_ros1_bag, read_ros1_log
@@ -40,13 +41,17 @@ if TYPE_CHECKING:
     from inverse_dynamics.data.joint_log import Clock
 
 _PUBLISHED_BY = 1000  # messages: a joint that none of them has isn't published
-_PANDAS_READS = {  # what isn't read here, by the function that reads it
-    ".xlsx": "read_excel",
-    ".json": "read_json",
-    ".pkl": "read_pickle",
-    ".h5": "read_hdf",
-    ".hdf5": "read_hdf",
-    ".feather": "read_feather",
+_PANDAS = "python -c \"import pandas; pandas.read_{}.to_parquet('{}.parquet')\""
+_CONVERTED_BY = {  # what isn't read here, by commands that make something of it that is
+    ".xlsx": _PANDAS.format("excel('{path}')", "{stem}"),
+    ".json": _PANDAS.format("json('{path}')", "{stem}"),
+    ".jsonl": _PANDAS.format("json('{path}', lines=True)", "{stem}"),
+    ".pkl": _PANDAS.format("pickle('{path}')", "{stem}"),
+    ".feather": _PANDAS.format("feather('{path}')", "{stem}"),
+    ".h5": HDF5,
+    ".hdf5": HDF5,
+    ".gz": "gunzip -k {path}",
+    ".zip": "unzip {path}",
 }
 
 
@@ -127,10 +132,10 @@ def open_motion(
     assert isinstance(path, Path)
     if is_ros1_bag(path):
         return read_ros1_log(path, joints, topic=topic, clock=clock, form=form, progress=progress)
-    if (reader := _PANDAS_READS.get(path.suffix.lower())) and path.is_file():
+    if (command := _CONVERTED_BY.get(path.suffix.lower())) and path.is_file():
         raise BagError(
-            f"{path}: expected a recording of ROS or a table, got {path.suffix}; convert it: python -c "
-            f"\"import pandas; pandas.{reader}('{path}').to_csv('{path.stem}.csv', index=False)\""
+            f"{path}: expected a recording of ROS or a table, got {path.suffix}; convert it: "
+            f"{command.format(path=path, stem=path.stem)}"
         )
     recording = bags.open_recording(path)
     topics = bags.topics_of(recording)

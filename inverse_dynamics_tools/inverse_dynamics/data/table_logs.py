@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -32,15 +33,17 @@ from inverse_dynamics.data.columns import (
     UNITS,
     VELOCITY,
     Matched,
+    first_to_last,
     listed_columns,
     match_columns,
     named_positions,
+    numbered,
     quantities_named,
     quantity_named,
     stated_columns,
     time_columns,
 )
-from inverse_dynamics.data.csv_table import CsvTable, is_csv
+from inverse_dynamics.data.csv_table import CsvTable, is_csv, is_number
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import BagError
 
@@ -54,6 +57,8 @@ if TYPE_CHECKING:
 _LONGEST_PERIOD = 0.5  # s: no recording of a motion is as slow
 _BETWEEN_RUNS, _PERIODS_BETWEEN_RUNS = 1.0, 50.0  # s; what the time base takes for a gap
 _UNITS_OF_TIME = ((5e5, "ns"), (5e2, "us"), (0.0, "ms"))
+_SURE_STEP, _SURE_TIME = 5e2, 1e11  # s: longer than any period, and later than any date since 1970
+_SHUFFLED = 0.25  # share of steps back in time that neither clocks nor episodes make
 _SINGULAR = 1e-9  # of a matrix of gears: its determinant by the lengths of its rows
 _MOTION = (POSITION, VELOCITY, ACCELERATION)
 _NEEDED_FOR = {
@@ -273,7 +278,10 @@ def open_table(
 
 
 def _without_fields(table: CsvTable) -> tuple[str, ...]:
-    """Names of columns; those of `rostopic echo -p` by joint: `field.position0` is `position.JOINT`."""
+    """Names of columns; those of `topic echo` by joint: `field.position0` is `position.JOINT`."""
+    if table.unnamed and (names := _echoed(table)):
+        table.unnamed = ""
+        return names
     if "field.name0" not in table.names:
         return table.names
     first = dict(zip(table.names, next(table.rows(), []), strict=False))
@@ -282,6 +290,17 @@ def _without_fields(table: CsvTable) -> tuple[str, ...]:
         if found := re.fullmatch(r"field\.(position|velocity|effort)(\d+)", name):
             renamed[name] = f"{found[1]}.{first.get(f'field.name{found[2]}', found[2])}"
     return tuple(renamed.get(name, name) for name in table.names)
+
+
+def _echoed(table: CsvTable) -> tuple[str, ...]:
+    """Names of columns that `ros2 topic echo --csv` writes of joint states; none if it didn't write them."""
+    row = next(table.rows(), [])
+    joints = [*takewhile(lambda text: not is_number(text), row[3:])]
+    names = ["stamp.sec", "stamp.nanosec", "frame_id", *(f"name.{joint}" for joint in joints)]
+    for kind in (POSITION, VELOCITY, EFFORT):
+        empty = row[len(names) : len(names) + 1] == [""]
+        names += [""] if empty else [f"{kind}.{joint}" for joint in joints]
+    return tuple(names) if joints and len(names) == len(row) else ()
 
 
 def parts_joined(paths: Sequence[Path]) -> list[Path]:
@@ -308,10 +327,17 @@ def read_table_log(
     Raises BagError.
     """
     motion = read_motion(table, joints, form, (POSITION, EFFORT), progress)
-    check_seconds(table, motion.time)
-    time, runs = _one_after_another(motion.time)
+    shuffled = (np.diff(motion.time) < 0).mean() > _SHUFFLED
+    order = np.argsort(motion.time, kind="stable") if shuffled else slice(None)
+    notes = ["rows are sorted by time"] if shuffled else []
+    time = motion.time[order]
+    if TIME not in form.factors(f"{table.path}") and (unit := _sure_unit(time)):
+        time = time * UNITS[unit]
+        notes.append(f"time is taken for {unit}, as no recording has such steps of seconds")
+    check_seconds(table, time)
+    time, runs = _one_after_another(time)
     stamps: Integers = np.asarray(np.round(time * 1e9), dtype=np.int64)
-    numbers = dict(motion.numbers)
+    numbers = {kind: columns[order] for kind, columns in motion.numbers.items()}
     derived = add_derivatives(time, numbers, (VELOCITY,))
     measured = CURRENT if CURRENT in numbers else EFFORT
     return JointLog(
@@ -324,7 +350,7 @@ def read_table_log(
         qdd=numbers.get(ACCELERATION),
         effort_is=CURRENT if measured == CURRENT else "",
         topic="",
-        notes=(*motion.notes, *runs, *derived),
+        notes=(*motion.notes, *notes, *runs, *derived),
     )
 
 
@@ -350,6 +376,8 @@ def read_motion(
     notes = [*_notes(table, matched), *unsure]
     if len(rows) < 2:
         left_out = f"; {table.incomplete} have an empty field" if table.incomplete else ""
+        if empty := [name for name in names if left_out and not len(table.read([name]))]:
+            left_out += f": no number is in the columns {listed(empty)}"
         raise BagError(
             f"{where}: expected at least 2 rows after the header, got {len(rows)}{left_out}"
         )
@@ -390,27 +418,39 @@ def _check_found(table: Table, matched: Matched, needed: Sequence[str], form: Lo
             f"{table.path}: expected efforts or currents, got both: {found[EFFORT][0]} and "
             f"{found[CURRENT][0]}; state those to compare with: --columns '{EFFORT}=...'"
         )
-    names = listed_columns(table.names)
-    of_joints = f" for the joints {listed(matched.joints, 20)}" if matched.joints else ""
-    for kind in needed:
-        if kind in found or (kind == EFFORT and CURRENT in found):
-            continue
-        unnamed = getattr(table, "unnamed", "")
-        if unnamed and not form.columns:
-            raise BagError(
-                f"{table.path}: {unnamed}; put a header before the numbers, or state the numbers of the "
-                "columns: --columns 'time=1, q=2-7, qd=8-13, effort=14-19'"
-            )
+    lacking = [k for k in needed if k not in found and not (k == EFFORT and CURRENT in found)]
+    unnamed = getattr(table, "unnamed", "")
+    if lacking and unnamed and not form.columns:
         raise BagError(
-            f"{table.path}: expected columns of {kind}{of_joints}, got {names}; {_NEEDED_FOR[kind]}; state "
-            f"them with --columns '{kind}=NAME*' (* is the joint's name or number), or by the numbers of columns, "
-            f"'{kind}=2-{1 + max(1, len(matched.joints))}'"
+            f"{table.path}: {unnamed}; put a header before the numbers, or state the numbers of the "
+            "columns: --columns 'time=1, q=2-7, qd=8-13, effort=14-19'"
         )
+    if lacking:
+        raise _lacking(table, matched.joints, lacking)
     if TIME not in found and form.rate is None:
         raise BagError(
-            f"{table.path}: expected a column of time [s], got {names}; state it with --columns "
-            "'time=NAME', or the samples per second with --rate"
+            f"{table.path}: expected a column of time [s], got {listed_columns(table.names)}; state it with "
+            "--columns 'time=NAME', or the samples per second with --rate"
         )
+
+
+def _lacking(table: Table, joints: Sequence[str], kinds: Sequence[str]) -> BagError:
+    """The error of missing columns; it names those that are more or fewer than the joints."""
+    others = numbered(table.names)
+    sets = [
+        f"{counted(len(others[kind].columns), 'column')}, {first_to_last(others[kind].columns)}"
+        for kind in kinds
+        if kind in others
+    ]
+    of_joints = f" for {counted(len(joints), 'joint')}, {listed(joints, 20)}" if joints else ""
+    patterns = {kind: others[kind].pattern if kind in others else "NAME*" for kind in kinds}
+    example = ", ".join(f"{kind}={pattern}" for kind, pattern in patterns.items())
+    return BagError(
+        f"{table.path}: expected columns of {' and '.join(kinds)}{of_joints}, got "
+        f"{'; '.join(sets) or listed_columns(table.names)}; {_NEEDED_FOR[kinds[0]]}; state them with --columns "
+        f"'{example}' (* is the joint's name or number, the first ones are taken), or by the numbers of columns, "
+        f"'{kinds[0]}=2-{1 + max(1, len(joints))}'"
+    )
 
 
 def _unsure_accelerations(matched: Matched, form: LogFormat, where: str) -> list[str]:
@@ -442,7 +482,7 @@ def _check_size(where: str, matched: Matched, numbers: Mapping[str, Floats]) -> 
 def _notes(table: Table, matched: Matched) -> list[str]:
     """What was taken for what, unless names say it exactly; what was left out."""
     used = {name for group in matched.columns.values() for name in group}
-    others = [name for name in table.names if name not in used]
+    others = [name for name in table.names if name and name not in used]
     notes = []
     if not matched.exact:
         notes.append(f"columns: {matched.text}")
@@ -453,11 +493,23 @@ def _notes(table: Table, matched: Matched) -> list[str]:
     return notes
 
 
+def _period(time: Floats) -> tuple[float, str]:
+    """Median step of (N,) a time, and the unit in which it is one of a motion."""
+    period = float(np.median(np.abs(np.diff(time))))
+    return period, next(unit for least, unit in _UNITS_OF_TIME if period >= least)
+
+
+def _sure_unit(time: Floats) -> str:
+    """The unit of (N,) a time that isn't in seconds; "": it may be."""
+    period, unit = _period(time)
+    sure = period >= _SURE_STEP or (period >= _LONGEST_PERIOD and np.abs(time).max() >= _SURE_TIME)
+    return unit if sure else ""
+
+
 def check_seconds(table: Table, time: Floats) -> None:
     """Raise BagError if (N,) the time of a motion can't be in seconds."""
-    period = float(np.median(np.abs(np.diff(time))))
+    period, unit = _period(time)
     if period >= _LONGEST_PERIOD:
-        unit = next(unit for least, unit in _UNITS_OF_TIME if period >= least)
         raise BagError(
             f"{table.path}: {TIME}: expected seconds, got steps of {period:g}: are they {unit}? Then state "
             f"--scale {TIME}={unit}"
