@@ -7,7 +7,7 @@ corrected before rivals are compared.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -88,16 +88,16 @@ def _in_degrees(samples: Samples, usable: Mask, rate: float) -> tuple[Finding, S
         return None
     scale = np.where(usable, 1 / _DEGREE, 1.0)
     if rate > 1:
-        which, other, unit = "positions", "velocities", "rad"
+        which, other, key = "positions", "velocities", "q"
         right = replace(samples, q=samples.q * scale)
     else:
-        which, other, unit = "velocities", "positions", "rad/s"
+        which, other, key = "velocities", "positions", "qd"
         right = replace(samples, qd=samples.qd * scale, qdd=samples.qdd * scale)
     reason = (
         f"positions change {rate:.3g} times as fast as velocities say: {which} are in degrees, "
         f"{other} in rad"
     )
-    return _degrees(reason, f"convert {which} to {unit}"), right
+    return _degrees(reason, ~usable, (key,)), right
 
 
 def _by_clock(
@@ -113,14 +113,20 @@ def _by_clock(
         "A clock at the wrong speed",
         f"positions change {rate:.3g} times as fast as velocities say, in every joint"
         + (f": time is in {unit}" if unit else ""),
-        "record again with a clock that runs right; that of reception may do: ids evaluate --clock receive",
+        f"give --scale time={unit}"
+        if unit in ("ms", "us", "ns")
+        else "record again with a clock that runs right; that of reception may do: ids evaluate --clock receive",
         value=rate,
     )
     return finding, replace(samples, time=samples.time * rate, qdd=samples.qdd / rate)
 
 
-def _degrees(reason: str, remedy: str) -> Finding:
-    return Finding("degrees", "Degrees", reason, remedy, value=_DEGREE)
+def _degrees(reason: str, kept: Mask, keys: Sequence[str] = ("q", "qd")) -> Finding:
+    """kept: (n,) joints whose numbers are right."""
+    unit = ",".join("1" if right else "deg" for right in kept) if kept.any() else "deg"
+    scales = " ".join(f"--scale {key}={unit}" for key in keys)
+    which = " and ".join({"q": "positions", "qd": "velocities"}[key] for key in keys)
+    return Finding("degrees", "Degrees", reason, f"convert {which} to rad: {scales}", value=_DEGREE)
 
 
 def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Finding:
@@ -130,7 +136,8 @@ def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Findin
         "velocity",
         "Velocities that contradict positions",
         f"velocities{whose} contradict the slope of the positions: they are {text}",
-        "record velocities in rad/s (prismatic: m/s)",
+        "record velocities in rad/s (prismatic: m/s)"
+        + (f", or give --scale qd={printed(1 / factor):g}" if factor and wrong.all() else ""),
         () if wrong.all() else names,
         value=printed(factor),
     )
@@ -167,7 +174,7 @@ def rivals(view: View, _: Fitting) -> Iterator[Rival]:
         q, qd, qdd = (scale * values for values in view.motion)
         finding = _degrees(
             "positions are beyond the joints' limits, and torques match if they are degrees",
-            "convert positions and velocities to rad",
+            view.prismatic,
         )
         yield view.rival("degrees", finding, base=view.arm.compared(q, qd, qdd), qd=qd)
     still = np.zeros_like(view.computed)
@@ -213,6 +220,6 @@ def beyond_reach(view: View) -> tuple[Finding, ...]:
         return (motors,)
     degrees = _degrees(
         f"{reach}the joints' limits in rad: they may be degrees",
-        "convert positions and velocities to rad",
+        view.prismatic,
     )
     return motors, degrees
