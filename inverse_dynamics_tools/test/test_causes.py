@@ -252,6 +252,13 @@ def test_a_mistake_is_named_and_is_a_heading_of_the_page(arm, headings, spoil, k
     assert cause.error_after is None or cause.error_after < min(0.1, 0.5 * cause.error_before)
 
 
+def test_rounded_efforts_are_at_no_limit(arm):
+    _, samples, model = arm
+    step = np.ptp(samples.measured, axis=(0, 1)) / 12
+    found = compare(replace(samples, measured=step * np.round(samples.measured / step)), model)
+    assert "saturation" not in [cause.kind for cause in found.causes]
+
+
 def test_the_units_of_efforts_are_named(arm):
     _, samples, model = arm
     for spoil, unit, value in (

@@ -64,6 +64,12 @@ def test_rest_counts_as_no_motion(log, tmp_path):
     assert "got 2.0 s" in str(reason([evaluated(tmp_path, resting)]))
 
 
+def test_efforts_that_nothing_measured(log, tmp_path):
+    effort = np.where(np.arange(6) == 2, 0.0, log.effort)
+    text = str(reason([evaluated(tmp_path, replace(log, effort=effort))]))
+    assert "elbow_joint: expected efforts that change, got the same in all samples" in text
+
+
 def test_a_joint_that_hardly_moves(log, tmp_path):
     q, qd = log.q.copy(), log.qd.copy()
     q[:, 3], qd[:, 3] = 0.7 + 0.02 * q[:, 3], 0.02 * qd[:, 3]

@@ -140,6 +140,17 @@ def test_a_table_gets_efforts_and_keeps_its_other_columns(tmp_path, torques, rob
     ]
 
 
+def test_a_table_of_lists_gets_efforts_in_columns(tmp_path, robot):
+    q, _, _, stamps = motion()
+    lists = [f'{t},"{x.tolist()}",{x[0]}' for t, x in zip(stamps * 1e-9, q, strict=True)]
+    (tmp_path / "planned.csv").write_text("\n".join(["time,q,x", *lists]))
+    result = trajectory_torques(tmp_path / "planned.csv", robot)
+    write_trajectory_torques(result, tmp_path / "filled.csv")
+    filled = read_recording(tmp_path / "filled.csv", JOINTS)
+    np.testing.assert_allclose(filled.effort, result.torques[0], rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(filled.q, q)
+
+
 N = (0, [0] * 6, [0] * 6, [0] * 6, [])
 
 

@@ -143,7 +143,12 @@ class CsvTable:
                 file.readline()
             for line in file:
                 if not line.isspace():
-                    yield line.rstrip("\n").split(self._delimiter)
+                    fields = line.rstrip("\n").split(self._delimiter)
+                    yield (
+                        fields
+                        if len(fields) == len(self.names)
+                        else self._fields(line.rstrip("\n"))
+                    )
 
     def line(self, fields: Iterable[str]) -> str:
         """A line of such a table."""

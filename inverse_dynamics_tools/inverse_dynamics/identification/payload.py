@@ -383,8 +383,8 @@ def _check(found: Fit, samples: Samples, evaluation: Evaluation, idle: Floats) -
         names = listed(np.array(evaluation.joint_names)[bad].tolist())
         raise PayloadError(
             f"{where}: no body at the tip explains the torques of {names}: more than half of what "
-            "they vary by is left; the model isn't this robot's, or efforts mean something else: look at "
-            "`ids evaluate` of a recording without load, and at docs/why_dont_my_torques_match.md"
+            "they vary by is left; the model lacks friction, isn't this robot's, or efforts mean something else: look "
+            "at `ids evaluate` of a recording without load, and at docs/why_dont_my_torques_match.md"
         )
     mass, half = estimate.mass, estimate.mass_half_width
     if half >= mass:

@@ -50,12 +50,25 @@ def check_recordings(evaluations: Sequence[Evaluation], accept: Sequence[str] = 
     evaluations: by the present model, or by the description. accept: kinds of REFUSED that are taken as they are.
     """
     for evaluation in evaluations:
+        _check_efforts(evaluation)
         refused = [c for c in evaluation.diagnosis if c.kind in REFUSED and c.kind not in accept]
         if refused:
             text = evaluation.notes[-1].removeprefix(CAUSE)  # all causes, or that they are rivals
             kinds = tuple(dict.fromkeys(cause.kind for cause in refused))
             raise _refusal(f"{evaluation.bag}: {text}", kinds, refused[0].mistake)
     _check_motion(evaluations)
+
+
+def _check_efforts(evaluation: Evaluation) -> None:
+    if still := [
+        joint
+        for joint, efforts in zip(evaluation.joint_names, evaluation.measured.T, strict=True)
+        if efforts.min() == efforts.max()
+    ]:
+        raise IdentificationError(
+            f"{evaluation.bag}: {listed(still)}: expected efforts that change, got the same in all samples: does the "
+            "robot's driver measure them? Some publish zeros"
+        )
 
 
 def check_accepted(accept: Sequence[str]) -> None:

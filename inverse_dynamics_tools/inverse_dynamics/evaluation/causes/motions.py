@@ -124,7 +124,7 @@ def _by_clock(
 def _degrees(reason: str, kept: Mask, keys: Sequence[str] = ("q", "qd")) -> Finding:
     """kept: (n,) joints whose numbers are right."""
     unit = ",".join("1" if right else "deg" for right in kept) if kept.any() else "deg"
-    scales = " ".join(f"--scale {key}={unit}" for key in keys)
+    scales = ", and of recorded velocities ".join(f"--scale {key}={unit}" for key in keys)
     which = " and ".join({"q": "positions", "qd": "velocities"}[key] for key in keys)
     return Finding("degrees", "Degrees", reason, f"convert {which} to rad: {scales}", value=_DEGREE)
 

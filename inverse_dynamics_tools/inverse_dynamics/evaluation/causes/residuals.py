@@ -73,7 +73,7 @@ def _at_limit(view: View, fitting: Fitting) -> tuple[Mask, Mask]:
 def _flat(view: View, fitting: Fitting, effort: Floats) -> Mask:
     """(N, n) efforts at their greatest value, of joints that move while they are."""
     limit, speed = effort.max(axis=0), np.abs(view.qd)
-    flat = effort > limit - _band(fitting)
+    flat = effort > limit - _band(view, fitting)
     share = flat.mean(axis=0)
     moving = (flat * speed).sum(axis=0) >= 0.05 * speed.max(axis=0) * flat.sum(axis=0)
     fits = (limit > 0) & moving & (share >= _SHARE[0]) & (share <= _SHARE[1])
@@ -85,15 +85,18 @@ def _piled(view: View, fitting: Fitting, sign: float, flat: Mask) -> Mask:
 
     Near the greatest value of a sine are as many values as in the three bands of that width beside it.
     """
-    effort, band = sign * view.samples.flat(view.samples.measured), _band(fitting)
+    effort, band = sign * view.samples.flat(view.samples.measured), _band(view, fitting)
     beside = (effort > effort.max(axis=0) - 4 * band) & ~flat
     changes = np.std(view.computed, axis=0, where=flat | ~flat.any(axis=0))
     return np.asarray((flat.mean(axis=0) > _PILE * beside.mean(axis=0)) & (changes > 2 * band))
 
 
-def _band(fitting: Fitting) -> Floats:
-    """(n,) efforts within it of the greatest one are at the limit."""
-    return np.asarray(np.clip(2 * fitting.noise, _FLAT, 10 * _FLAT) * fitting.size)
+def _band(view: View, fitting: Fitting) -> Floats:
+    """(n,) efforts within it of the greatest one are at the limit: at least a step of those that are rounded."""
+    steps = np.abs(np.diff(view.samples.measured, axis=1))
+    step = np.where(steps > 0, steps, np.inf).min(axis=(0, 1))
+    band = np.clip(2 * fitting.noise, _FLAT, 10 * _FLAT) * fitting.size
+    return np.asarray(np.maximum(band, np.where(np.isfinite(step), step, 0.0)))
 
 
 def _limited(view: View, at_limit: Mask) -> Rival:
