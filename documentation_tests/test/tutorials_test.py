@@ -42,7 +42,7 @@ def test_the_friction_of_my_robot_is_what_is_left(followed: Path) -> None:
 
 def test_my_robot_has_figures_and_a_page(followed: Path) -> None:
     assert (followed / "my_result/torques.png").stat().st_size > 0
-    assert "shoulder" in (followed / "my_report.html").read_text()
+    assert "shoulder" in (followed / "my_result/report.html").read_text()
 
 
 def test_the_control_loop_is_built_and_prints_what_the_page_says(tmp_path: Path) -> None:

@@ -27,7 +27,8 @@ def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):
     assert re.search(r"elbow_joint +N m( +[-+.e\d]+){2} +[\d.]+ % +[-+.e\d]+ +[\d.]+", out)
     assert re.search(r"mean +N m", out)
     assert "cut-off" in out
-    assert re.search(r"figure +result/torques.png\n", out)
+    assert re.search(r"page +result/report.html\nfigure +result/torques.png\n", out)
+    assert "elbow_joint" in (tmp_path / "result/report.html").read_text()
     result = read_evaluation(tmp_path / "result")
     assert re.search(rf"mean +N m .*{re.escape(rounded(result.mean_rmse))}", out)
     remedy = "it has no metadata.yaml; a recording is in it: give result/bag\n"

@@ -120,7 +120,7 @@ def test_parquet_files_are_one_table(week):
 
 def test_a_long_recording_has_no_page_of_its_own(bags, tmp_path, monkeypatch):
     monkeypatch.setattr(many_evaluations, "in_processes", in_this_process)
-    monkeypatch.setattr(many_evaluations, "_MOST_ON_A_PAGE", 1499)
+    monkeypatch.setattr(many_evaluations.evaluations, "_MOST_ON_A_PAGE", 1499)
     evaluate_many(bags / "monday", "ur10_simulated", tmp_path / "out", figures=("png",))
     assert (tmp_path / "out/monday/torques.png").is_file()
     assert not (tmp_path / "out/monday/report.html").exists()

@@ -33,7 +33,9 @@ if TYPE_CHECKING:
 
 SCHEMA = 4
 MARK = "evaluation.json"
+PAGE = "report.html"
 MARK_OF_SEVERAL = "recordings.json"  # see many_evaluations.py
+_MOST_ON_A_PAGE = 300_000  # samples, which a page holds in memory
 
 CONTENTS = Contents(
     MARK,
@@ -46,7 +48,7 @@ CONTENTS = Contents(
         "bag/bag.db3*",
         "bag/bag.mcap",
     ),
-    added=("series.csv", "series.parquet", "report.html"),
+    added=("series.csv", "series.parquet", PAGE),
 )
 """Files of a result; `ids export` and `ids report` add theirs."""
 
@@ -100,7 +102,7 @@ def evaluate_into(
     progress: Progress = no_progress,
     **options: Any,
 ) -> Evaluation:
-    """evaluate() and write_evaluation() of a recording that needn't fit into memory.
+    """evaluate() and write_evaluation() of a recording that needn't fit into memory; with figures, a page too.
 
     parquet: name of the recording in series.parquet; None: no such file. options: those of evaluate().
     The arrays of the result lie in unnamed files, in memory only where they are looked at.
@@ -120,6 +122,12 @@ def evaluate_into(
 
             file = target / "series.parquet"
             export_series(evaluation, file, recording=parquet, progress=progress)
+        if figures and len(evaluation.log) <= _MOST_ON_A_PAGE:
+            from inverse_dynamics.report import report_run, write_page
+
+            progress("drawing", 0, 1)
+            name = Path(directory).name
+            write_page(target / PAGE, name, [report_run(evaluation, name)])
         return evaluation
 
 

@@ -33,6 +33,7 @@ from inverse_dynamics.errors import ArgumentError, OutputError, UserError
 from inverse_dynamics.evaluation.evaluation import check_options, evaluate
 from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
 from inverse_dynamics.results import evaluations
+from inverse_dynamics.results.evaluations import PAGE
 from inverse_dynamics.robot.robots import Robot, load_robot
 
 if TYPE_CHECKING:
@@ -44,7 +45,6 @@ if TYPE_CHECKING:
 
 SCHEMA = 1
 MARK = evaluations.MARK_OF_SEVERAL
-PAGE = "report.html"
 OWN_FILES = (MARK, "summary.csv", PAGE)
 
 _OF_EACH = (*evaluations.CONTENTS.files, *evaluations.CONTENTS.added)
@@ -60,7 +60,6 @@ COLUMNS = (
 )
 
 _MOST_TOLD = 5  # failures, in a text
-_MOST_ON_A_PAGE = 1_000_000  # samples: the page of a recording holds them in memory
 
 
 @dataclass(frozen=True)
@@ -226,10 +225,6 @@ def _evaluate_one(task: _Task) -> EvaluationSummary:
         **task.writing,
         **task.options,
     )
-    if task.writing["figures"] and len(evaluation.log) <= _MOST_ON_A_PAGE:
-        from inverse_dynamics.report import report_run, write_page
-
-        write_page(task.target / PAGE, task.name, [report_run(evaluation, task.name)])
     window = TimeWindow(task.options.get("start"), task.options.get("end"))
     return summary_of(evaluation, task.name, window)
 

@@ -49,6 +49,7 @@ examples:
 
 results, written whole or not at all:
   metrics.json            errors of each joint
+  report.html             a page: the robot in motion, its torques, errors
   torques.png             measured and computed torques and the error, over time
   bag/                    recording with /torques (computed) and /torques_gt (measured)
   series.npz              time, q, qd, qdd, effort (as recorded), measured, computed, band, for numpy.load()
@@ -125,7 +126,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any]) -> None:
     from inverse_dynamics.data.several_recordings import name_of
-    from inverse_dynamics.results.evaluations import evaluate_into, metrics
+    from inverse_dynamics.results.evaluations import PAGE, evaluate_into, metrics
     from inverse_dynamics.verbs.screen import heading, progress_bar, show
     from inverse_dynamics.verbs.tables import error_table
 
@@ -147,6 +148,7 @@ def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any
             ("effort means", evaluation.effort.summary),
             ("note", evaluation.notes),
             error_table(evaluation),
+            ("page", [str(page)] if (page := out / PAGE).is_file() else []),
             ("figure", drawn),
             ("bag", f"{out / 'bag'}: /torques (computed), /torques_gt (measured)"),
             ("errors", out / "metrics.json"),
