@@ -39,7 +39,8 @@ Effort withGains(Effort effort, const EffortOptions& options) {
     throw ConfigurationError(
         options.where + ": effort means current, " + effort.stated_by +
         ": expected drive gains [N m/A], got none from " + options.gains_from + " nor from " +
-        options.plugin + "; give drive_gains, one per joint, or put them into " +
+        options.plugin +
+        "; give drive_gains (ids: --drive-gains), one per joint, or put them into " +
         (options.configured_by.empty() ? "a run configuration" : options.configured_by));
   }
   effort.drive_gains = options.drive_gains;

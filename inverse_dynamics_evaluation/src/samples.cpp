@@ -89,6 +89,7 @@ struct Timing {
 // Second differences of one wrong number are -1, 2, -1 times its error: shares of their squares.
 constexpr double kOfThree = 0.9;                        // at least, of those of all samples
 constexpr double kLeastOfOne = 0.55, kMostOfOne = 0.8;  // of the three, in the middle: 4 of 6
+constexpr double kBeside = 0.1;  // at least, on each side, of that in the middle: 1 of 4
 
 // The sample of a joint whose number can't be right; 0: none.
 Index loneSample(const SampleTable::JointColumns& columns, Index j) {
@@ -104,7 +105,9 @@ Index loneSample(const SampleTable::JointColumns& columns, Index j) {
     if (value > greatest) greatest = value, middle = k;
   }
   if (middle < 2 || middle + 2 > last) return 0;
-  const double three = square(middle - 1) + greatest + square(middle + 1);
+  const double before = square(middle - 1), after = square(middle + 1);
+  if (std::min(before, after) < kBeside * greatest) return 0;  // what moved on in a gap
+  const double three = before + greatest + after;
   const double share = greatest / three;
   return three > kOfThree * sum && share > kLeastOfOne && share < kMostOfOne ? middle : 0;
 }

@@ -114,6 +114,10 @@ TEST(LogAccelerations, SayWhichSampleCannotBeRight) {
   EXPECT_THAT(logAccelerations(log).findings, Contains(HasSubstr("sample 701 at 7.0")));
   log.q.rightCols(300).array() -= 1.0;  // a jump that stays isn't one wrong sample
   EXPECT_THAT(logAccelerations(log).findings, Not(Contains(HasSubstr("jumps and returns"))));
+  log = sine();
+  log.qd.rightCols(300).array() -= 1.0;  // nor is one that changes the slope, as a gap does
+  log.qd(0, 700) -= 0.25;
+  EXPECT_THAT(logAccelerations(log).findings, Not(Contains(HasSubstr("jumps and returns"))));
 }
 
 TEST(LogAccelerations, ChooseTheCutOffFromLongPieces) {

@@ -239,7 +239,8 @@ TEST(Effort, IsStatedByWhatTheProgramIsConfiguredBy) {
   EXPECT_EQ(errorOf<ConfigurationError>([&] { statedEffort(node); }),
             "parameter 'effort': effort means current, as the node's configuration says: expected "
             "drive gains [N m/A], got none from parameter 'drive_gains' nor from package/Solver; "
-            "give drive_gains, one per joint, or put them into the node's configuration");
+            "give drive_gains (ids: --drive-gains), one per joint, or put them into the node's "
+            "configuration");
   node.drive_gains = {2, 3};
   const Effort effort = statedEffort(node);
   EXPECT_EQ(effort.summary(),
