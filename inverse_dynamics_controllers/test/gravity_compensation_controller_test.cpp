@@ -105,9 +105,12 @@ TEST_F(GravityCompensationControllerTest, DampingThatDoesNotFitIsRefusedAndTheOl
   };
   refused("damping.values", rclcpp::ParameterValue(Numbers{1.0, 2.0}),
           "parameter 'damping.values': wrong size: expected 6 numbers, or one for all, got 2; ");
-  refused("damping.values", rclcpp::ParameterValue(Numbers{kNan}),
-          "parameter 'damping.values': joint shoulder_pan_joint: wrong value: expected a finite "
-          "number, 0 or more [N m s/rad], got nan; ");
+  // Lyrical's rclcpp compares numbers of arrays with their range itself.
+  const std::string reason = set("damping.values", rclcpp::ParameterValue(Numbers{kNan}));
+  EXPECT_TRUE(reason.find("range.") != std::string::npos ||
+              reason.find("parameter 'damping.values': joint shoulder_pan_joint: wrong value: "
+                          "expected a finite number, 0 or more [N m s/rad], got nan; ") == 0)
+      << reason;
   EXPECT_NE(set("damping.values", rclcpp::ParameterValue(Numbers{-1.0})), "");
   EXPECT_NE(set("damping.values", rclcpp::ParameterValue(Numbers{1e6})), "");
   EXPECT_NE(set("damping.rate", rclcpp::ParameterValue(0.0)), "");

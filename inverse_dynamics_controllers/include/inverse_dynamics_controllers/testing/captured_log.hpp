@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 namespace inverse_dynamics_controllers {
 
@@ -45,9 +46,11 @@ class CapturedLog {
     return mutex;
   }
 
-  static void handle(const rcutils_log_location_t*, int severity, const char*,
+  // Without a controller manager nobody initialises the statistics that lyrical's controllers register.
+  static void handle(const rcutils_log_location_t*, int severity, const char* name,
                      rcutils_time_point_value_t, const char* format, va_list* arguments) {
     if (severity < RCUTILS_LOG_SEVERITY_WARN) return;
+    if (name && std::string_view(name) == "pal_statistics") return;
     std::array<char, 4096> line{};
     std::vsnprintf(line.data(), line.size(), format, *arguments);
     const std::lock_guard<std::mutex> lock(mutex_());
