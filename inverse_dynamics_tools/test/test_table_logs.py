@@ -313,6 +313,14 @@ def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
             "got 0; 2 have an empty field: no number is in the columns velocity.a",
         ),
         (HEADER + "1e10,1,2,3\n1e10,1,2,3\n", "expected seconds, got 1e+10; count from"),
+        (
+            "7,0,base,a,b,1,2,,3,4\n7,5,base,b,a,2,1,,4,3\n",
+            "expected the joints a, b in all messages, as in the first one, got b, a in message 2; record",
+        ),
+        (
+            "field.name0,field.position0\na,1\nb,2\n",
+            "expected the joints a in all messages, as in the first one, got b in message 2; record",
+        ),
     ],
 )
 def test_what_is_wrong_with_a_table_is_said(file, text, expected):
@@ -510,6 +518,13 @@ def test_files_of_one_recording_are_joined_at_the_times_of_the_first(tmp_path):
     log = read_recording(f"{q}+{tau}", ("joint1",))
     np.testing.assert_array_equal(log.q[:, 0], np.sin(time))
     np.testing.assert_allclose(log.effort[:, 0], 10 * time)
+    shuffled = np.array([4.0, 2.0, 0.0, 3.0, 1.0])
+    write_table(tau, {"t": shuffled / 2, "joint1": 5 * shuffled})
+    log = read_recording(f"{q}+{tau}", ("joint1",))
+    np.testing.assert_allclose(log.effort[:, 0], 10 * time)
+    write_table(tau, {"t": np.tile(time[::2], 2), "joint1": np.arange(22.0)})
+    with pytest.raises(BagError, match=r"tau\.csv: expected times that increase.* got 1 step back"):
+        read_recording(f"{q}+{tau}", ("joint1",))
     tau.write_text("joint1\n1\n2\n")
     with pytest.raises(
         BagError, match=r"tau\.csv: expected 21 rows, as .*q\.csv has, .*got 2 rows"

@@ -137,18 +137,21 @@ class CsvTable:
         return np.concatenate(blocks)
 
     def rows(self) -> Iterator[list[str]]:
-        """Fields of each row, as they are."""
-        with self._open() as file:
-            for _ in range(self._lines_before):
-                file.readline()
-            for line in file:
-                if not line.isspace():
-                    fields = line.rstrip("\n").split(self._delimiter)
-                    yield (
-                        fields
-                        if len(fields) == len(self.names)
-                        else self._fields(line.rstrip("\n"))
-                    )
+        """Fields of each row, as they are. Raises BagError."""
+        try:
+            with self._open() as file:
+                for _ in range(self._lines_before):
+                    file.readline()
+                for line in file:
+                    if not line.isspace():
+                        fields = line.rstrip("\n").split(self._delimiter)
+                        yield (
+                            fields
+                            if len(fields) == len(self.names)
+                            else self._fields(line.rstrip("\n"))
+                        )
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
+            raise self._unreadable(error) from error
 
     def line(self, fields: Iterable[str]) -> str:
         """A line of such a table."""

@@ -234,6 +234,9 @@ class JoinedTable:
             if count is None:
                 times, count = (rows[:, -1] if time else None), len(rows)
             elif times is not None and time and not np.array_equal(times, rows[:, -1]):
+                _check_increasing(self._tables[0].path, times[_order(times)])
+                rows = rows[_order(rows[:, -1])]
+                _check_increasing(table.path, rows[:, -1])
                 rows = np.column_stack(
                     [np.interp(times, rows[:, -1], each, np.nan, np.nan) for each in rows.T]
                 )
@@ -247,6 +250,14 @@ class JoinedTable:
         outside = np.isnan(joined).any(axis=1)
         self.incomplete += int(outside.sum())
         return joined[~outside]
+
+
+def _check_increasing(path: Path, time: Floats) -> None:
+    if back := int((np.diff(time) < 0).sum()):
+        raise BagError(
+            f"{path}: expected times that increase, as files of different times are interpolated, got "
+            f"{counted(back, 'step')} back; split the files where time restarts"
+        )
 
 
 def is_table(source: Path | Mapping[str, Any]) -> bool:
@@ -285,6 +296,7 @@ def _without_fields(table: CsvTable) -> tuple[str, ...]:
     if "field.name0" not in table.names:
         return table.names
     first = dict(zip(table.names, next(table.rows(), []), strict=False))
+    _check_joints(table, [k for k, n in enumerate(table.names) if n.startswith("field.name")])
     renamed = {"%time": "received_ns", "field.header.stamp": "time_ns"}
     for name in table.names:
         if found := re.fullmatch(r"field\.(position|velocity|effort)(\d+)", name):
@@ -300,7 +312,25 @@ def _echoed(table: CsvTable) -> tuple[str, ...]:
     for kind in (POSITION, VELOCITY, EFFORT):
         empty = row[len(names) : len(names) + 1] == [""]
         names += [""] if empty else [f"{kind}.{joint}" for joint in joints]
-    return tuple(names) if joints and len(names) == len(row) else ()
+    if not joints or len(names) != len(row):
+        return ()
+    _check_joints(table, range(3, 3 + len(joints)))
+    return tuple(names)
+
+
+def _check_joints(table: CsvTable, columns: Sequence[int]) -> None:
+    """Raise BagError unless all messages have the joints of the first one, in its order."""
+    first: list[str] = []
+    for number, fields in enumerate(table.rows(), 1):
+        if len(fields) != len(table.names):
+            continue  # read() refuses it
+        names = [fields[column] for column in columns]
+        first = first or names
+        if names != first:
+            raise BagError(
+                f"{table.path}: expected the joints {listed(first)} in all messages, as in the first one, got "
+                f"{listed(names)} in message {number}; record one topic per arm, or a recording of ROS"
+            )
 
 
 def parts_joined(paths: Sequence[Path]) -> list[Path]:
@@ -327,10 +357,9 @@ def read_table_log(
     Raises BagError.
     """
     motion = read_motion(table, joints, form, (POSITION, EFFORT), progress)
-    shuffled = (np.diff(motion.time) < 0).mean() > _SHUFFLED
-    order = np.argsort(motion.time, kind="stable") if shuffled else slice(None)
-    notes = ["rows are sorted by time"] if shuffled else []
+    order = _order(motion.time)
     time = motion.time[order]
+    notes = ["rows are sorted by time"] if not np.array_equal(time, motion.time) else []
     if TIME not in form.factors(f"{table.path}") and (unit := _sure_unit(time)):
         time = time * UNITS[unit]
         notes.append(f"time is taken for {unit}, as no recording has such steps of seconds")
@@ -491,6 +520,12 @@ def _notes(table: Table, matched: Matched) -> list[str]:
     if table.incomplete:
         notes.append(f"{counted(table.incomplete, 'row')} with an empty field left out")
     return notes
+
+
+def _order(time: Floats) -> Integers:
+    """Indices that sort (N,) times of shuffled rows; those of other rows as they are."""
+    shuffled = len(time) > 1 and (np.diff(time) < 0).mean() > _SHUFFLED
+    return np.argsort(time, kind="stable") if shuffled else np.arange(len(time))
 
 
 def _period(time: Floats) -> tuple[float, str]:
