@@ -308,6 +308,10 @@ def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
             "expected columns of position and effort for 1 joint, a, got time",
         ),
         (HEADER + "0,1,2,3\n8,1,2,3\n", "expected seconds, got steps of 8: are they ms?"),
+        (HEADER + "0,1,2,3\n1000,1,2,3\n", "expected seconds, got steps of 1000: are they us?"),
+        (HEADER + "0,1,0.5,3\n2e6,2,0.5,3\n", "expected seconds, got steps of 2e+06: are they"),
+        (HEADER + "0,1,2,3\n25e4,1,2,3\n", "expected seconds, got steps of 250000: are they us?"),
+        (HEADER + "4e18,1,2,3\n4.1e18,1,2,3\n", "expected seconds, got steps of 1e+17: are they"),
         (
             HEADER + "0,1,,3\n1,1,,3\n",
             "got 0; 2 have an empty field: no number is in the columns velocity.a",
@@ -462,7 +466,7 @@ def test_a_data_set_of_lerobot_has_its_joints_by_name(tmp_path):
     np.testing.assert_array_equal(whole.qd, state[:, [3, 2]])
     np.testing.assert_array_equal(whole.effort, -state[:, [1, 0]])
     np.testing.assert_array_equal(second.q, whole.q[3:])
-    assert whole.notes[-1].startswith("time begins anew 1 time")
+    assert whole.notes[-1].startswith("time restarts 1 time")
 
 
 @pytest.mark.parametrize("kind", ["npz", "mat", "parquet"])
@@ -493,12 +497,23 @@ def test_rows_out_of_order_are_sorted(file):
     assert log.notes == ("rows are sorted by time",)
 
 
-@pytest.mark.parametrize(("step", "unit"), [(8e6, "ns"), (8e3, "us")])
-def test_time_that_is_not_in_seconds_is_converted(file, step, unit):
-    file.write_text(HEADER + "".join(f"{step * k:.0f},{k},{k},0\n" for k in range(4)))
+@pytest.mark.parametrize(
+    ("start", "step", "velocity", "unit", "period"),
+    [
+        (0, 8_000_000, 0.0, "ns", 0.008),
+        (0, 1_000, 1e3, "us", 0.001),
+        (0, 250_000, 4e3, "ns", 0.00025),
+        (1_700_000_000_000_000_000, 250_000, 0.0, "ns", 0.00025),
+        (1_700_000_000_000, 8, 0.0, "ms", 0.008),
+    ],
+)
+def test_time_is_converted_where_its_unit_is_sure(file, start, step, velocity, unit, period):
+    """By dates since 1970, by velocities, or by steps that fit ns alone."""
+    rows = [f"{start + step * k},{k},{velocity},0\n" for k in range(12)]
+    file.write_text(HEADER + "".join(rows))
     log = read_recording(file, ("a",))
-    np.testing.assert_allclose(log.time, [0, 0.008, 0.016, 0.024])
-    assert log.notes == (f"time is taken for {unit}, as no recording has such steps of seconds",)
+    np.testing.assert_allclose(np.diff(log.time), period, rtol=0.01)  # digits of dates in ns
+    assert log.notes[0].startswith(f"time is taken to be in {unit}: ")
 
 
 def test_episodes_follow_each_other(file):
@@ -506,7 +521,7 @@ def test_episodes_follow_each_other(file):
     file.write_text(HEADER + rows)
     log = read_recording(file, ("a",))
     np.testing.assert_allclose(log.time, [0, 0.1, 0.2, 0.3, 5.3, 5.4, 5.5])
-    assert log.notes == ("time begins anew 1 time: runs are taken one after another, 5 s apart",)
+    assert log.notes == ("time restarts 1 time: runs are taken one after another, 5 s apart",)
 
 
 def test_files_of_one_recording_are_joined_at_the_times_of_the_first(tmp_path):

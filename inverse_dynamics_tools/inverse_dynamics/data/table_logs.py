@@ -57,7 +57,8 @@ if TYPE_CHECKING:
 _LONGEST_PERIOD = 0.5  # s: no recording of a motion is as slow
 _BETWEEN_RUNS, _PERIODS_BETWEEN_RUNS = 1.0, 50.0  # s; what the time base takes for a gap
 _UNITS_OF_TIME = ((5e5, "ns"), (5e2, "us"), (0.0, "ms"))
-_SURE_STEP, _SURE_TIME = 5e2, 1e11  # s: longer than any period, and later than any date since 1970
+_EPOCH = (1e9, 2.0**31)  # s since 1970: from 2001 to 2038
+_AGREEMENT = 0.9  # correlation of steps of positions with those that velocities make
 _SHUFFLED = 0.25  # share of steps back in time that neither clocks nor episodes make
 _SINGULAR = 1e-9  # of a matrix of gears: its determinant by the lengths of its rows
 _MOTION = (POSITION, VELOCITY, ACCELERATION)
@@ -360,13 +361,14 @@ def read_table_log(
     order = _order(motion.time)
     time = motion.time[order]
     notes = ["rows are sorted by time"] if not np.array_equal(time, motion.time) else []
-    if TIME not in form.factors(f"{table.path}") and (unit := _sure_unit(time)):
+    numbers = {kind: columns[order] for kind, columns in motion.numbers.items()}
+    unit, why = _sure_unit(time, numbers)
+    if unit and TIME not in form.factors(f"{table.path}"):
         time = time * UNITS[unit]
-        notes.append(f"time is taken for {unit}, as no recording has such steps of seconds")
+        notes.append(f"time is taken to be in {unit}: {why}")
     check_seconds(table, time)
     time, runs = _one_after_another(time)
     stamps: Integers = np.asarray(np.round(time * 1e9), dtype=np.int64)
-    numbers = {kind: columns[order] for kind, columns in motion.numbers.items()}
     derived = add_derivatives(time, numbers, (VELOCITY,))
     measured = CURRENT if CURRENT in numbers else EFFORT
     return JointLog(
@@ -534,11 +536,27 @@ def _period(time: Floats) -> tuple[float, str]:
     return period, next(unit for least, unit in _UNITS_OF_TIME if period >= least)
 
 
-def _sure_unit(time: Floats) -> str:
-    """The unit of (N,) a time that isn't in seconds; "": it may be."""
-    period, unit = _period(time)
-    sure = period >= _SURE_STEP or (period >= _LONGEST_PERIOD and np.abs(time).max() >= _SURE_TIME)
-    return unit if sure else ""
+def _sure_unit(time: Floats, numbers: Mapping[str, Floats]) -> tuple[str, str]:
+    """The unit of (N,) a time that isn't in seconds, and how it shows; "": it may be, or doesn't show."""
+    period, latest = _period(time)[0], np.abs(time).max()
+    if period < _LONGEST_PERIOD:
+        return "", ""
+    units = [unit for _, unit in _UNITS_OF_TIME if latest * UNITS[unit] < _EPOCH[1]]
+    for unit in units:
+        if latest * UNITS[unit] >= _EPOCH[0] and period * UNITS[unit] < _LONGEST_PERIOD:
+            return unit, "its numbers are then dates of this century"
+    if VELOCITY in numbers:
+        way = np.diff(numbers[POSITION], axis=0)
+        driven = (numbers[VELOCITY][1:] + numbers[VELOCITY][:-1]) / 2 * np.diff(time)[:, None]
+        lengths = float(np.linalg.norm(way)), float(np.linalg.norm(driven))
+        agree = (way * driven).sum() > _AGREEMENT * lengths[0] * lengths[1]
+        for unit in units:
+            if agree and 0.5 < lengths[0] / (lengths[1] * UNITS[unit]) < 2.0:
+                slow = period * UNITS[unit] >= _LONGEST_PERIOD
+                return ("", "") if slow else (unit, "velocities then agree with positions")
+    if units and period >= _UNITS_OF_TIME[0][0]:
+        return "ns", f"steps of {period:g} are too long for other units"
+    return "", ""
 
 
 def check_seconds(table: Table, time: Floats) -> None:
@@ -557,7 +575,7 @@ def check_seconds(table: Table, time: Floats) -> None:
 
 
 def _one_after_another(time: Floats) -> tuple[Floats, list[str]]:
-    """Time (N,) that goes on where it begins anew, as that of a file with several episodes does."""
+    """Time (N,) that goes on where it restarts, as that of a file with several episodes does."""
     steps = np.diff(time)
     back = np.flatnonzero(steps < 0) + 1
     period = float(np.median(np.abs(steps)))
@@ -566,7 +584,7 @@ def _one_after_another(time: Floats) -> tuple[Floats, list[str]]:
     between = max(_BETWEEN_RUNS, _PERIODS_BETWEEN_RUNS * period)
     shifts = np.zeros(len(time))
     shifts[back] = between - steps[back - 1]
-    note = f"time begins anew {counted(len(back), 'time')}: runs are taken one after another, {between:g} s apart"
+    note = f"time restarts {counted(len(back), 'time')}: runs are taken one after another, {between:g} s apart"
     return time + np.cumsum(shifts), [note]
 
 
