@@ -60,6 +60,11 @@ HOSTILE = {
     "only a header": (HEADER, ": expected at least 2 rows after the header, got 0"),
     "one row": (HEADER + ROW, ": expected at least 2 rows after the header, got 1"),
     "nothing": ("", ": is empty; expected a header line and rows of numbers"),
+    "an empty comment": ("#\n", ": is empty; expected a header line and rows of numbers"),
+    "minutes and seconds": (
+        HEADER + "12:30.7,1,2,3\n" * 2,
+        ":2: column 1 (time): expected a number, got '12:30.7'",
+    ),
     "blank lines": ("\n \n", ": is empty; expected a header line and rows of numbers"),
     "numbers alone": (ROW + ROW, ": expected a header line that names the columns, got numbers"),
     "a column twice": (

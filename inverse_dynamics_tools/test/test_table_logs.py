@@ -245,6 +245,10 @@ def test_a_unit_that_only_the_owner_knows_is_asked_for(file):
         "time,q1,tau1\n12:30:00,1,2\n12:30:00.500,3,4\n",
         't,q,tau,x\n0,[1],(2),"[8, 9]"\n0.5,[3],(4),"[8, 9]"\n',
         "7,0,base,a,1,7,2\n7,500000000,base,a,3,7,4\n",
+        "time,q1,tau1\n23:59:59.7500000,1,2\n00:00:00.25,3,4\n",
+        "time,q1,tau1\n2026-01-31 23:59:59.5Z,1,2\n2026-02-01 00:00:00.000000000Z,3,4\n",
+        "t,q1,tau1,x,y\n0,,NA,null,N/A\n0,1,2,7,7\n0.5,3,4,7,7\n",
+        "# made by a logger\n" * 60 + "t,q1,tau1\n0,1,2\n0.5,3,4\n",
     ],
 )
 def test_a_table_is_read_as_programs_write_it(file, text):
@@ -299,6 +303,10 @@ def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
         (
             "time,foo\n0,1\n",
             "expected columns of position and effort for 1 joint, a, got time, foo; torques",
+        ),
+        (
+            "time,1,2,3\n0,1,2,3\n",
+            "expected columns of position and effort for 1 joint, a, got time, 1 to 3; torques",
         ),
         (HEADER.replace("time", "x") + ROWS, "expected a column of time [s], got x, position.a"),
         (HEADER.replace("effort.a", "x") + ROWS, "expected columns of effort for 1 joint, a, got"),

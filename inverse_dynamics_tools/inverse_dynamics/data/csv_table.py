@@ -14,8 +14,9 @@ from __future__ import annotations
 
 import csv
 import os
+import re
 from contextlib import suppress
-from datetime import datetime, timezone
+from datetime import datetime
 from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
@@ -23,6 +24,7 @@ import numpy as np
 from inverse_dynamics.base.decimals import ASCII_SPACE, NOT_FINITE, decimal
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted, harmless, shown
+from inverse_dynamics.data.columns import time_columns
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
@@ -34,7 +36,10 @@ if TYPE_CHECKING:
 
 _SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".log", ".asc")
 _COMMENT = ("#", "% ")
-_MOST_ABOVE = 50  # lines before the first row
+_MOST_ABOVE = 50  # lines before the first row that aren't comments
+_DAY = 86400.0  # s
+_DATE = re.compile(r"([0-9]{4}-[0-9]{2}-[0-9]{2})[T ]")
+_CLOCK = re.compile(r"([0-9]{1,2}:[0-9]{2}:[0-9]{2})([.,][0-9]+)?(Z|[+-][0-9]{2}:[0-9]{2})?")
 _EMPTY = frozenset(("", "nan", "-nan", "na", "n/a", "none", "null"))
 _UNPACKED_BY = {b"\x1f\x8b": "gunzip", b"PK\x03\x04": "unzip"}  # by the first bytes
 _BLOCK = 2**20  # characters read together
@@ -62,8 +67,8 @@ class CsvTable:
     def _beginning(self, file: TextIO) -> tuple[list[str], str]:
         """Lines above the first row, and that row: the first line of more numbers than words, else the second line."""
         lines: list[tuple[int, str]] = []
-        number = 0
-        while len(lines) < _MOST_ABOVE and (text := file.readline(_LONGEST_HEADER)):
+        number = plain = 0
+        while plain < _MOST_ABOVE and (text := file.readline(_LONGEST_HEADER)):
             number += 1
             if len(text) >= _LONGEST_HEADER:
                 raise BagError(
@@ -75,7 +80,8 @@ class CsvTable:
                 return [line for _, line in lines], text.strip("\r\n")
             if not text.isspace():
                 lines.append((number, text.strip("\r\n")))
-        if not lines:
+                plain += not text.startswith(_COMMENT)
+        if not any(text.strip("#% ") for _, text in lines):
             raise BagError(f"{self.path}: is empty; expected a header line and rows of numbers")
         self._lines_before = lines[:2][-1][0] - (len(lines) > 1)
         return [lines[0][1]], lines[1][1] if len(lines) > 1 else ""
@@ -118,6 +124,7 @@ class CsvTable:
     def read(self, columns: Sequence[str], progress: Progress = no_progress) -> Floats:
         """(N, columns) numbers, all of them finite. Raises BagError."""
         self.incomplete = 0
+        self._times_of_day: set[int] = set()
         where = [self.names.index(name) for name in columns]
         size = self.path.stat().st_size
         blocks = [np.empty((0, len(columns)))]
@@ -134,7 +141,11 @@ class CsvTable:
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise self._unreadable(error) from error
         progress("reading", size, size)
-        return np.concatenate(blocks)
+        numbers = np.concatenate(blocks)
+        for k, column in enumerate(where):
+            if column in self._times_of_day:  # beyond midnight they restart
+                numbers[1:, k] += _DAY * np.cumsum(np.diff(numbers[:, k]) < -_DAY / 2)
+        return numbers
 
     def rows(self) -> Iterator[list[str]]:
         """Fields of each row, as they are. Raises BagError."""
@@ -206,6 +217,8 @@ class CsvTable:
                 return number
             finite = " finite"
         with suppress(ValueError):
+            if not _DATE.match(text):
+                self._times_of_day.add(column)
             return _seconds(text)
         raise BagError(
             f"{self.path}:{line}: column {column + 1} ({harmless(self.names[column])}): expected a{finite} "
@@ -236,16 +249,22 @@ class CsvTable:
 
 def _seconds(text: str) -> float:
     """Seconds of a date, `2026-01-31T12:30:00.5`, since 1970, or of a time of day. Raises ValueError."""
-    if ":" not in text:
+    date = _DATE.match(text)
+    clock = _CLOCK.fullmatch(text, date.end() if date else 0)
+    if not clock:
         raise ValueError(text)
-    date = datetime.fromisoformat(text if "-" in text[:8] else f"1970-01-01T{text}")
-    return (date if date.tzinfo else date.replace(tzinfo=timezone.utc)).timestamp()
+    day, zone = date[1] if date else "1970-01-01", (clock[3] or "Z").replace("Z", "+00:00")
+    whole = datetime.fromisoformat(f"{day}T{clock[1].zfill(8)}{zone}")
+    return whole.timestamp() + float(f"0{clock[2] or '.0'}".replace(",", "."))
 
 
 def _is_row(text: str) -> bool:
-    """Whether more fields hold numbers than words."""
-    fields = [field for field in text.split(_delimiter(text)) if field.strip(' "\r\n')]
-    return 2 * _numbers_in([field.strip('"') for field in fields]) > len(fields)
+    """Whether more fields hold numbers, or say that there is none, than words, and none is a name of time."""
+    fields = [field.strip(' "\r\n') for field in text.split(_delimiter(text))]
+    fields = [field for field in fields if field]
+    numbers = _numbers_in(fields) + sum(field.lower() in _EMPTY for field in fields)
+    named = time_columns([*fields[:1], *(field for field in fields if len(field) > 1)])
+    return 2 * numbers > len(fields) and not named
 
 
 def _fits(header: str, row: str) -> bool:
