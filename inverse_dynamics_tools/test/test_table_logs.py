@@ -264,7 +264,7 @@ def test_a_table_is_read_as_programs_write_it(file, text):
     [
         ("log.xlsx", b"PK", r"got \.xlsx; convert it: python -c .*read_excel.*'log\.parquet'"),
         ("log.h5", b"", r"got \.h5; convert it: python -c .*h5py\.File\('.*log\.h5'\).*'log\.npz'"),
-        ("log.csv.gz", b"", r"convert it: gunzip -k .*log\.csv\.gz"),
+        ("my log.csv.gz", b"", r"convert it: gunzip -k '.*my log\.csv\.gz'"),
         (
             "log.csv",
             b"\x1f\x8b\x80",

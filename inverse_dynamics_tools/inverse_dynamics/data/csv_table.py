@@ -155,25 +155,25 @@ class CsvTable:
                     file.readline()
                 for line in file:
                     if not line.isspace():
-                        fields = line.rstrip("\n").split(self._delimiter)
-                        yield (
-                            fields
-                            if len(fields) == len(self.names)
-                            else self._fields(line.rstrip("\n"))
-                        )
+                        text = line.rstrip("\n")
+                        fields = text.split(self._delimiter)
+                        plain = len(fields) == len(self.names) and not _has_lists(text)
+                        yield fields if plain else self._fields(text)
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise self._unreadable(error) from error
 
     def line(self, fields: Iterable[str]) -> str:
-        """A line of such a table."""
-        return (self._delimiter or " ").join(fields) + "\n"
+        """A line of such a table; what holds the delimiter is quoted."""
+        mark = self._delimiter or " "
+        quoted = ('"{}"'.format(f.replace('"', '""')) if mark in f else f for f in fields)
+        return mark.join(quoted) + "\n"
 
     def _open(self) -> TextIO:
         return self.path.open(encoding="utf-8-sig")
 
     def _fields(self, line: str) -> list[str]:
         fields = _split(line, self._delimiter)
-        if "[" not in line and "(" not in line:
+        if not _has_lists(line):
             return fields
         return [number for field in fields for number in _numbers_of(field)]
 
@@ -273,6 +273,10 @@ def _fits(header: str, row: str) -> bool:
     fields = [_split(line, mark) for line in (header, row)]
     widths = [len(each) - (not each[-1].strip()) for each in fields if each]
     return widths[:1] == widths[1:] and 2 * sum(map(bool, map(str.strip, fields[0]))) > widths[0]
+
+
+def _has_lists(line: str) -> bool:
+    return "[" in line or "(" in line
 
 
 def _numbers_of(field: str) -> list[str]:

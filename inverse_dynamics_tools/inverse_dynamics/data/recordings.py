@@ -4,12 +4,13 @@
     log = read_recording("recording", ["joint_1", "joint_2"])
 
 rosbag2 recordings of sensor_msgs/JointState (bags.py) or trajectory_msgs/JointTrajectory
-(joint_trajectories.py), ROS 1 recordings (ros1_bags.py), and tables: .csv, .tsv, .txt, .parquet, .npz,
-.npy, .mat, data sets of LeRobot, arrays by name (table_logs.py).
+(joint_trajectories.py), ROS 1 recordings (ros1_bags.py), and tables: .csv, .tsv, .txt, .dat, .log,
+.asc, .parquet, .npz, .npy, .mat, data sets of LeRobot, arrays by name (table_logs.py).
 """
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -50,8 +51,8 @@ _CONVERTED_BY = {  # what isn't read here, by commands that make something of it
     ".feather": _PANDAS.format("feather('{path}')", "{stem}"),
     ".h5": HDF5,
     ".hdf5": HDF5,
-    ".gz": "gunzip -k {path}",
-    ".zip": "unzip {path}",
+    ".gz": "gunzip -k {quoted}",
+    ".zip": "unzip {quoted}",
 }
 
 
@@ -70,7 +71,8 @@ def read_recording(
     Parameters
     ----------
     path
-        A table (.csv, .tsv, .txt, .parquet, .npz, .npy, .mat), arrays by name, else a recording of ROS.
+        A table (.csv, .tsv, .txt, .dat, .log, .asc, .parquet, .npz, .npy, .mat), arrays by name, else a
+        recording of ROS.
     joints
         Names, in the order wanted; by default those of the recording.
     topic
@@ -135,7 +137,7 @@ def open_motion(
     if (command := _CONVERTED_BY.get(path.suffix.lower())) and path.is_file():
         raise BagError(
             f"{path}: expected a recording of ROS or a table, got {path.suffix}; convert it: "
-            f"{command.format(path=path, stem=path.stem)}"
+            f"{command.format(path=path, stem=path.stem, quoted=shlex.quote(f'{path}'))}"
         )
     recording = bags.open_recording(path)
     topics = bags.topics_of(recording)

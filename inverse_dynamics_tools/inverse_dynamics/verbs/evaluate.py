@@ -74,8 +74,8 @@ def declare(options: Options) -> None:
         nargs="+",
         help="rosbag2 recording of sensor_msgs/JointState or trajectory_msgs/JointTrajectory (a "
         "directory, or a .db3 or .mcap file), a ROS 1 recording (.bag), or a table (.csv, .tsv, "
-        ".txt, .parquet, .npz, .mat; several files of one recording: A+B); or a directory that holds "
-        "recordings",
+        ".txt, .dat, .log, .asc, .parquet, .npz, .npy, .mat; several files of one "
+        "recording: A+B); or a directory that holds recordings",
     )
     options.robot()
     options.output(

@@ -39,7 +39,8 @@ def declare(options: Options) -> None:
         "trajectory",
         metavar="TRAJECTORY",
         type=Path,
-        help="rosbag2 recording of trajectory_msgs/JointTrajectory, or a table (.csv, .tsv or .txt)",
+        help="rosbag2 recording of trajectory_msgs/JointTrajectory, or a table of text (.csv, .tsv, .txt, .dat, .log, "
+        ".asc)",
     )
     options.robot()
     options.output(
