@@ -535,11 +535,12 @@ def test_episodes_follow_each_other(file):
 def test_files_of_one_recording_are_joined_at_the_times_of_the_first(tmp_path):
     q, tau = tmp_path / "q.csv", tmp_path / "tau.csv"
     time = 0.1 * np.arange(21)
-    write_table(q, {"t": time, "joint1": np.sin(time)})
+    write_table(q, {"t": time, "q1": np.sin(time), "qd1": np.cos(time)})
     write_table(tau, {"t": time[::2], "joint1": 10 * time[::2]})
     assert parts_joined([q, tau]) == [tmp_path / f"q.csv+{tau}"]
     log = read_recording(f"{q}+{tau}", ("joint1",))
     np.testing.assert_array_equal(log.q[:, 0], np.sin(time))
+    np.testing.assert_array_equal(log.qd[:, 0], np.cos(time))
     np.testing.assert_allclose(log.effort[:, 0], 10 * time)
     shuffled = np.array([4.0, 2.0, 0.0, 3.0, 1.0])
     write_table(tau, {"t": shuffled / 2, "joint1": 5 * shuffled})

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
@@ -200,10 +201,11 @@ class Motion:
 
 
 class JoinedTable:
-    """Several tables as one: columns of all, `FILE.NAME`, at the times of the first one.
+    """Several tables as one: columns of all, at the times of the first one.
 
-    Those of a file with other times lie on straight lines between its own. Raises BagError: a file has no
-    time and another number of rows.
+    A name that two files have, or that doesn't say its quantity by itself, is `FILE.NAME`. Values
+    of a file with other times lie on straight lines between its own. Raises BagError: a file has no time and
+    another number of rows, or its time restarts.
     """
 
     def __init__(self, path: Path, tables: Sequence[Table]) -> None:
@@ -211,8 +213,13 @@ class JoinedTable:
         self.incomplete = 0
         self._tables = tables
         self._times = [next(iter(time_columns(t.names)), "") for t in tables]
+        names = Counter(name for table in tables for name in table.names)
         self._origin = {
-            (name if (k, name) == (0, self._times[0]) else f"{table.path.stem}.{name}"): (k, name)
+            (
+                name
+                if (k, name) == (0, self._times[0]) or (names[name] == 1 and _tells(name))
+                else f"{table.path.stem}.{name}"
+            ): (k, name)
             for k, (table, time) in enumerate(zip(tables, self._times, strict=True))
             for name in table.names
             if k == 0 or name != time
@@ -251,6 +258,11 @@ class JoinedTable:
         outside = np.isnan(joined).any(axis=1)
         self.incomplete += int(outside.sum())
         return joined[~outside]
+
+
+def _tells(name: str) -> bool:
+    """Whether the name says its quantity, whatever file it is in."""
+    return quantities_named([name], EFFORT) == quantities_named([name], CURRENT)
 
 
 def _check_increasing(path: Path, time: Floats) -> None:
