@@ -160,8 +160,8 @@ def velocities_in_degrees(samples: Samples) -> Samples:
     return replace(samples, qd=np.degrees(samples.qd), qdd=np.degrees(samples.qdd))
 
 
-def slow_clock(samples: Samples) -> Samples:
-    return replace(samples, time=samples.time / 2, qdd=2 * samples.qdd)
+def slow_clock(factor: float, samples: Samples) -> Samples:
+    return replace(samples, time=samples.time / factor, qdd=factor * samples.qdd)
 
 
 def clipped(j: int, samples: Samples) -> Samples:
@@ -205,7 +205,8 @@ MISTAKES = [
     (in_degrees, "degrees", ()),
     (positions_in_degrees, "degrees", ()),
     (velocities_in_degrees, "degrees", ()),
-    (slow_clock, "clock", ()),
+    (partial(slow_clock, 2.0), "clock", ()),
+    (partial(slow_clock, 1e-3), "clock", ()),
     (partial(rates, 2.0), "clock", ()),
     (partial(velocities, 0.0), "velocity", ()),
     (partial(velocities, -1.0), "velocity", ()),
@@ -250,6 +251,15 @@ def test_a_mistake_is_named_and_is_a_heading_of_the_page(arm, headings, spoil, k
     assert cause.mistake in ("", *headings)
     assert not cause.mistake or cause.reference in found.text
     assert cause.error_after is None or cause.error_after < min(0.1, 0.5 * cause.error_before)
+    assert "--scale time" not in cause.remedy  # recordings of ROS refuse it
+
+
+def test_a_joint_at_rest_is_in_degrees_as_the_others_are(arm):
+    _, samples, model = arm
+    resting = np.arange(len(samples.joints)) == len(samples.joints) - 1
+    still = {"q": np.where(resting, 1.5, samples.q), "qd": np.where(resting, 0.0, samples.qd)}
+    found = compare(positions_in_degrees(replace(samples, **still)), model)
+    assert found.causes[0].remedy == "convert positions to rad: give --scale q=deg"
 
 
 def test_rounded_efforts_are_at_no_limit(arm):

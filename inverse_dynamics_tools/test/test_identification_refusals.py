@@ -68,6 +68,7 @@ def test_efforts_that_nothing_measured(log, tmp_path):
     effort = np.where(np.arange(6) == 2, 0.0, log.effort)
     text = str(reason([evaluated(tmp_path, replace(log, effort=effort))]))
     assert "elbow_joint: expected efforts that change, got the same in all samples" in text
+    assert "record another topic, or end the chain before it" in text
 
 
 def test_a_joint_that_hardly_moves(log, tmp_path):

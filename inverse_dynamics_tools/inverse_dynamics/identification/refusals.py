@@ -67,7 +67,8 @@ def _check_efforts(evaluation: Evaluation) -> None:
     ]:
         raise IdentificationError(
             f"{evaluation.bag}: {listed(still)}: expected efforts that change, got the same in all samples: does the "
-            "robot's driver measure them? Some publish zeros"
+            "robot's driver measure them? Some publish zeros; record another topic, or end the chain before it: "
+            "`root` and `tip` of a run configuration"
         )
 
 

@@ -128,7 +128,7 @@ def arm_model(
 
 
 def _of_description(robot: Robot, description: str, own: Solver) -> Solver:
-    """The solver to turn gravity of: values identified under one direction needn't hold under another."""
+    """Solver whose gravity is rotated: the description's, as identified values may hold for one direction only."""
     if description and brings_own_model(robot):
         load = {name: v for name, v in robot.parameters.items() if name.startswith("payload.")}
         changed = replace(robot, plugin=RIGID_BODY, friction=False, parameters=load)

@@ -51,15 +51,14 @@ def contradiction(samples: Samples, arm: ArmModel) -> tuple[Finding, Samples] | 
     wrong = follows & (np.abs(rate - 1) > _AGREE)
     if not wrong.any():
         return None
-    turning = follows & ~arm.of_type("prismatic", len(moves))
+    prismatic = arm.of_type("prismatic", len(moves))
+    turning = follows & ~prismatic
     usable = turning if turning.any() else follows
     middle = float(np.median(rate[usable]))
     if (np.abs(rate[usable] / middle - 1) < _SAME).all():
         everywhere = bool((wrong == follows).all())
-        found = _in_degrees(samples, usable, middle) or _by_clock(
-            samples, usable, middle, everywhere
-        )
-        if found:
+        found = _in_degrees(samples, prismatic, middle) if turning.any() else None
+        if found := found or _by_clock(samples, usable, middle, everywhere):
             return found
     factor = float(np.median(1 / rate[wrong]))
     reverse = (np.abs(rate[wrong] + 1) < _AGREE).all()
@@ -82,11 +81,11 @@ def _ways(samples: Samples) -> tuple[Floats, Floats, Mask]:
     return way, integral, np.quantile(np.abs(way), 0.9, axis=0) > 5 * resolution
 
 
-def _in_degrees(samples: Samples, usable: Mask, rate: float) -> tuple[Finding, Samples] | None:
-    """Positions or velocities of all joints that turn."""
+def _in_degrees(samples: Samples, prismatic: Mask, rate: float) -> tuple[Finding, Samples] | None:
+    """Positions or velocities of all joints that turn, also of those at rest."""
     if min(abs(rate / _DEGREE - 1), abs(rate * _DEGREE - 1)) >= _SAME:
         return None
-    scale = np.where(usable, 1 / _DEGREE, 1.0)
+    scale = np.where(prismatic, 1.0, 1 / _DEGREE)
     if rate > 1:
         which, other, key = "positions", "velocities", "q"
         right = replace(samples, q=samples.q * scale)
@@ -97,7 +96,7 @@ def _in_degrees(samples: Samples, usable: Mask, rate: float) -> tuple[Finding, S
         f"positions change {rate:.3g} times as fast as velocities say: {which} are in degrees, "
         f"{other} in rad"
     )
-    return _degrees(reason, ~usable, (key,)), right
+    return _degrees(reason, prismatic, (key,)), right
 
 
 def _by_clock(
@@ -113,20 +112,19 @@ def _by_clock(
         "A clock at the wrong speed",
         f"positions change {rate:.3g} times as fast as velocities say, in every joint"
         + (f": time is in {unit}" if unit else ""),
-        f"give --scale time={unit}"
-        if unit in ("ms", "us", "ns")
-        else "record again with a clock that runs right; that of reception may do: ids evaluate --clock receive",
+        "record again with a clock that runs right; that of reception may do: ids evaluate --clock receive",
         value=rate,
     )
     return finding, replace(samples, time=samples.time * rate, qdd=samples.qdd / rate)
 
 
-def _degrees(reason: str, kept: Mask, keys: Sequence[str] = ("q", "qd")) -> Finding:
-    """kept: (n,) joints whose numbers are right."""
-    unit = ",".join("1" if right else "deg" for right in kept) if kept.any() else "deg"
-    scales = ", and of recorded velocities ".join(f"--scale {key}={unit}" for key in keys)
+def _degrees(reason: str, prismatic: Mask, keys: Sequence[str] = ("q", "qd")) -> Finding:
+    """prismatic: (n,) joints, whose numbers are right."""
+    unit = ",".join("1" if right else "deg" for right in prismatic) if prismatic.any() else "deg"
+    scales = "; if velocities are recorded, also ".join(f"--scale {key}={unit}" for key in keys)
     which = " and ".join({"q": "positions", "qd": "velocities"}[key] for key in keys)
-    return Finding("degrees", "Degrees", reason, f"convert {which} to rad: {scales}", value=_DEGREE)
+    remedy = f"convert {which} to rad{'/s' * (keys == ('qd',))}: give {scales}"
+    return Finding("degrees", "Degrees", reason, remedy, value=_DEGREE)
 
 
 def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Finding:
