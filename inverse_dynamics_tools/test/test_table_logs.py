@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
 import re
+import shlex
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +11,7 @@ import pytest
 from conftest import JOINTS, motion
 
 from inverse_dynamics import Solver, evaluate, load_robot, read_recording
+from inverse_dynamics.data.array_files import HDF5
 from inverse_dynamics.data.recordings import position_ranges
 from inverse_dynamics.data.table_logs import LogFormat, open_table, parts_joined, read_motion
 from inverse_dynamics.errors import BagError, EvaluationError
@@ -280,6 +284,21 @@ def test_what_is_not_read_is_refused_with_the_command_that_converts_it(
     file.write_bytes(content)
     with pytest.raises(BagError, match=expected):
         read_recording(file, ("a",))
+
+
+def test_the_command_for_hdf5_keeps_arrays_of_numbers(tmp_path):
+    (tmp_path / "h5py.py").write_text(
+        "import numpy\n"
+        "class File:\n"
+        "    def __init__(self, path): pass\n"
+        "    def visititems(self, visit):\n"
+        "        visit('group', object())\n"
+        "        visit('file', numpy.ones(3))\n"
+        "        visit('names', numpy.array(['a', 'b'], object))\n"
+    )
+    _, option, code = shlex.split(HDF5.format(path="log.h5", stem="log"))
+    subprocess.run([sys.executable, option, code], cwd=tmp_path, check=True)
+    assert open_table(tmp_path / "log.npz").names == ("/file",)
 
 
 def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
 
 _INFO = "meta/info.json"  # of a LeRobot data set
-# The command that makes an .npz file of one in HDF5.
+# The command that makes an .npz file of one in HDF5. With `/` before them, no name is that of an argument of savez().
 HDF5 = (
-    "python -c \"import h5py, numpy; d = {{}}; h5py.File('{path}').visititems(lambda k, v: d.update({{k: v[()]}}) if "
-    "hasattr(v, 'shape') else None); numpy.savez('{stem}.npz', **d)\""
+    "python -c \"import h5py, numpy; d = {{}}; h5py.File('{path}').visititems(lambda k, v: d.update({{'/' + k: v[()]}})"
+    " if hasattr(v, 'dtype') and v.dtype.kind in 'fiub' else None); numpy.savez('{stem}.npz', **d)\""
 )
 
 
