@@ -94,6 +94,12 @@ def of(*patterns, numbers=range(7)):
         ),
         (of("actual_q_{}", "current_{}", "torque_{}"), PANDA, ["actual_q_0", "torque_0"]),
         (
+            of("q{}", "torque_enable_{}", "current_{}"),
+            PANDA,
+            ["q0", "torque_enable_0", "current_0"],  # both, which read_motion() refuses
+        ),
+        (of("q{}", "s{}", "tau{}"), PANDA, ["q0", "tau0"]),
+        (
             [*of("MsrdJntPos_A{}", "MsrdJntTrq_A{}", "ExtnJntTrq_A{}", numbers=range(1, 8))],
             PANDA,
             ["MsrdJntPos_A1", "MsrdJntTrq_A1"],
@@ -142,6 +148,17 @@ def test_what_is_stated_comes_first():
             "'position=l*_pos, velocity=l*_vel'",
         ),
         (["position.a"], "", "f.csv: joint b: expected a column position.b, got none"),
+        (
+            ["sim_time", "real_time"],
+            "",
+            "f.csv: time: expected one set of columns, got sim_time, real_time; state the right one, for example: "
+            "--columns 'time=sim_time'",
+        ),
+        (
+            ["sec", "usec"],
+            "",
+            "f.csv: time: expected seconds, with or without nanoseconds, got sec and usec; write",
+        ),
         (
             ["foo", "bar"],
             "q=q*",

@@ -46,12 +46,12 @@ _WEAK_WORDS = {
 # The first ones are preferred.
 _TIME = "time t timestamp timestamps stamp stamps ts secs seconds sec duration"
 _TIME_WORDS = (*_TIME.split(),)
-# These words say nothing: a name that has fewer others is preferred.
-_SAYING_NOTHING = (
+# Beside these words a quantity stays what it is: a name that has fewer others is preferred.
+_NEUTRAL_WORDS = (
     "actual act measured meas msrd joint joints jnt j axis a state states robot arm field data observation header "
     "cont abs rec real elapsed sim sample relative from start fb feedback"
 )
-_NEUTRAL = frozenset(_SAYING_NOTHING.split())
+_NEUTRAL = frozenset(_NEUTRAL_WORDS.split())
 # Not what the arm did, or not what its motors did.
 _PASSED_OVER = (
     "target desired des ref reference cmd command commanded goal setpoint planned action ext extn external error err "
@@ -93,15 +93,14 @@ _UNITS_OF_NAMES = {
 }
 _PER_TIME = frozenset({"per", "s", "s2", "sec", "second"})
 # In names without any other word than neutral ones, `joint_1 [deg]`, units say the quantity, or the joint alone.
-_BARE_WORDS = (
-    {
-        EFFORT: frozenset(_UNITS_OF_NAMES[EFFORT]),
-        VELOCITY: _PER_TIME | {"rpm"},
-        CURRENT: frozenset(_UNITS_OF_NAMES[CURRENT]),
-    },
-    {POSITION: frozenset(("joint", "joints", "jnt", "j", "axis", *_UNITS_OF_NAMES[POSITION]))},
-)
-_BARE = _NEUTRAL.union({"*"}, *_BARE_WORDS[0].values(), *_BARE_WORDS[1].values())
+# The first ones come first.
+_BARE_WORDS = {
+    EFFORT: frozenset(_UNITS_OF_NAMES[EFFORT]),
+    VELOCITY: frozenset({"rpm"}),
+    CURRENT: frozenset(_UNITS_OF_NAMES[CURRENT]),
+    POSITION: frozenset(("joint", "joints", "jnt", "j", "axis", *_UNITS_OF_NAMES[POSITION])),
+}
+_BARE = _NEUTRAL.union({"*"}, _PER_TIME, *_BARE_WORDS.values())
 # Units whose factor only the owner knows.
 UNKNOWN_UNITS = frozenset({"percent", "permille", "counts", "ticks", "increments", "pulses"})
 
@@ -121,7 +120,9 @@ class Family(NamedTuple):
 
     @property
     def pattern(self) -> str:
-        """What the names have in common, with `*` in the place of the joint."""
+        """What the names have in common, with `*` in the place of the joint; the name if it's one."""
+        if len(self.columns) == 1:
+            return self.columns[0]
         start = _common_start(self.columns)
         end = _common_start([name[len(start) :][::-1] for name in self.columns])[::-1]
         return f"{start}*{end}"
@@ -174,32 +175,36 @@ def match_columns(
     names separated by spaces, or numbers of columns from 1 on, `2-7`.
     where: the file, for errors. quantities: which of QUANTITIES to look for.
 
-    What isn't found is left out; the caller knows what it needs. Currents are left out where there are efforts,
-    unless they are stated. Raises BagError: a pattern that fits nothing, two sets of columns that fit as well, some
-    joints of a quantity missing.
+    What isn't found is left out; the caller knows what it needs. Currents are left out, unless they are stated, where
+    there are efforts whose names have no foreign word: `torque_enable_1` may be none. Raises BagError: a pattern that
+    fits nothing, two sets of columns that fit as well, some joints of a quantity missing.
     """
     given = dict(stated_columns(stated, where))
     joints = tuple(joints) or _joints_of(names, given)
     columns: dict[str, tuple[str, ...]] = {}
     units: dict[str, str] = {}
     time = _chosen_time(given[TIME], names) if TIME in given else time_columns(names)
+    unclear: dict[str, list[Family]] = {}
     if time:
         _known(names, time, where, f"{TIME}=")
-        columns[TIME] = (time[0], *_nanoseconds_beside(time[0], names))
+        columns[TIME] = (time[0], *_nanoseconds_beside(time[0], names, where))
         units[TIME] = _unit(TIME, _words(time[0]))
+    if len(time) > 1:
+        unclear[TIME] = [Family((), (name,), "") for name in time]
     found = _families(names, joints)
-    unclear: dict[str, list[Family]] = {}
+    sure_efforts = EFFORT in given
     for quantity in quantities:
         if quantity in given:
             columns[quantity] = _matching(given[quantity], names, joints, where)
             units[quantity] = _unit(quantity, _words(columns[quantity][0]))
             continue
-        if quantity == (EFFORT if CURRENT in given else CURRENT if EFFORT in columns else ""):
+        if quantity == (EFFORT if CURRENT in given else CURRENT if sure_efforts else ""):
             continue
         _refuse_incomplete(names, joints, quantity, where)
         if best := _best(found[quantity]):
             columns[quantity] = best[0].columns
             units[quantity] = best[0].unit
+            sure_efforts = sure_efforts or (quantity == EFFORT and not best[0].rank[1])
         if len(best) > 1:
             unclear[quantity] = best
     if unclear:
@@ -250,11 +255,9 @@ def _quantity_of_bare(words: Sequence[str]) -> str | None:
     """What a unit beside a joint's name or number says, or a word for the joint alone."""
     if "*" not in words or not _BARE.issuperset(words):
         return None
-    for vocabulary in _BARE_WORDS:
-        for kind, known in vocabulary.items():
-            if not known.isdisjoint(words):
-                return kind
-    return None
+    if not _PER_TIME.isdisjoint(words):  # `s` alone may be anything
+        return None if set(_UNITS_OF_NAMES[POSITION]).isdisjoint(words) else VELOCITY
+    return next((kind for kind, known in _BARE_WORDS.items() if known & {*words}), None)
 
 
 def _unit(quantity: str, words: Sequence[str]) -> str:
@@ -265,7 +268,7 @@ def _unit(quantity: str, words: Sequence[str]) -> str:
 
 
 def _rank(kind: int, quantity: str, words: Sequence[str]) -> tuple[int, ...]:
-    """Fewest words that say nothing of the quantity come first, then fewest neutral ones."""
+    """Fewest foreign words come first, then fewest neutral ones."""
     said = {*_WORDS.get(quantity, "").split(), *_WEAK_WORDS.get(quantity, "").split(), "*"}
     others = [
         word
@@ -361,23 +364,34 @@ def numbered(names: Sequence[str]) -> dict[str, Family]:
 
 
 def time_columns(names: Sequence[str]) -> list[str]:
-    """The column that is best for the time, if there is any: of the fewest words, of the first of _TIME_WORDS."""
+    """Columns that are as good as any for the time: of the fewest words, of the first of _TIME_WORDS."""
     known = {*_TIME_WORDS, *_UNITS_OF_NAMES[TIME]}
-    ranked = []
+    ranked = defaultdict(list)
     for name in names:
         words = [word for word in _words(name) if word not in _NEUTRAL]
         if known.issuperset(words) and (said := [w for w in _TIME_WORDS if w in words]):
-            ranked.append((len(_words(name)), _TIME_WORDS.index(said[0]), name))
-    return [min(ranked)[2]] if ranked else []
+            ranked[len(_words(name)), _TIME_WORDS.index(said[0])].append(name)
+    return [*dict.fromkeys(ranked[min(ranked)])] if ranked else []
 
 
-def _nanoseconds_beside(time: str, names: Sequence[str]) -> list[str]:
-    """`stamp.nanosec`, which belongs to `stamp.sec`."""
+def _nanoseconds_beside(time: str, names: Sequence[str], where: str) -> list[str]:
+    """`stamp.nanosec`, which belongs to `stamp.sec`. Raises BagError where it is another part of a second."""
     *rest, unit = _words(time) or ("",)
     if unit not in ("sec", "secs", "seconds"):
         return []
-    apart = [(*rest, word) for word in ("nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds")]
-    return [name for name in names if _words(name) in apart][:1]
+    parts = {
+        prefix: name
+        for name in names
+        for prefix in ("n", "nano", "u", "micro", "m", "milli")
+        if _words(name) in [(*rest, prefix + word) for word in ("sec", "secs", "seconds")]
+    }
+    nanoseconds = [parts.pop(prefix) for prefix in ("n", "nano") if prefix in parts]
+    if parts and not nanoseconds:
+        raise BagError(
+            f"{where}: time: expected seconds, with or without nanoseconds, got {time} and "
+            f"{listed([*parts.values()])}; write time as one column: {time} plus its fractions"
+        )
+    return nanoseconds[:1]
 
 
 def _chosen_time(pattern: str, names: Sequence[str]) -> list[str]:
