@@ -354,8 +354,11 @@ def test_masses_that_a_maker_has_estimated_are_no_mistake(arm, seed):
         return f'<mass value="{float(mass[1]) * random.uniform(0.7, 1.3)}"'
 
     true = re.sub(r'<mass value="([0-9.]+)"', other, urdf_of(name))
-    found = compare(recorded(name, torques_of(name, description=true)), model)
+    torques = torques_of(name, description=true)
+    found = compare(recorded(name, torques), model)
     assert {cause.kind for cause in found.causes} <= {"friction"}
+    without = recorded(name, lambda *m: torques(*m) - model.gravity(m[0]), speed=0.5)
+    assert compare(without, model_of(name, without_gravity=True)).excluded == ()
 
 
 @pytest.mark.parametrize(

@@ -250,6 +250,9 @@ class _Contest:
         if findings:
             return Comparison(_causes([(one, None) for one in findings], self.as_is))
         if before > _FITS:
+            rough = [self.score(i) for i, r in enumerate(self.rivals) if r.kind == "rough"]
+            if min(rough, default=before) <= _MISMATCH:  # inexact masses explain it
+                return Comparison()
             return Comparison(excluded=tuple(sorted({r.kind for r in self.rivals} - {"rough"})))
         lacks = self.fit.friction is None and self.as_is >= max(_GAIN * before, _RUBS)
         return Comparison(_causes([(residuals.FRICTION, before)] if lacks else [], self.as_is))
