@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 NORMAL = 1.96  # half the interval that holds 95 % of a normal distribution, in standard deviations
 UNIFORM = 0.95  # the same of a uniform distribution, by its greatest value
 
-LEVEL = 0.0115
-"""Of the range of torques: standard deviation of offsets from day to day and from robot to robot that lie anywhere
-within 2 % of it, the accuracy of common sensors of torque and current."""
+LEVEL = 0.0075
+"""Of the range of torques: standard deviation of offsets from day to day and from robot to robot. Sensors of torque
+and current have an accuracy of 1 to 2 % of their range."""
 
 SHARE = 0.12
 """Of friction, from day to day: standard deviation of what is anywhere from 0.8 to 1.2, as friction of an arm that

@@ -14,7 +14,7 @@ import pytest
 from inverse_dynamics import _core, evaluate, identify, load_robot, write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import EvaluationError
-from inverse_dynamics.evaluation.bands import LEVEL, SHARE
+from inverse_dynamics.evaluation.bands import SHARE
 from inverse_dynamics.evaluation.evaluation import CAUSE, Evaluation
 from inverse_dynamics.evaluation.series import series_columns
 from inverse_dynamics.identification import cross_validation
@@ -389,7 +389,7 @@ class Day(Known):
         super().__init__()
         random = np.random.default_rng(seed)
         self.share, n = share, len(self.model.joint_names)
-        self.offset = random.normal(0, LEVEL / np.sqrt(2), n) * RANGE  # two days differ by LEVEL
+        self.offset = random.normal(0, 0.005, n) * RANGE  # an accuracy of 1 %
         self.holding = STEP * random.uniform(-1, 1, n)  # friction of the arm at rest
 
     def torques(self, q, qd, qdd):
