@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
 
+#include <rclcpp/version.h>
+
 #include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
 
 namespace inverse_dynamics_controllers {
@@ -105,12 +107,13 @@ TEST_F(GravityCompensationControllerTest, DampingThatDoesNotFitIsRefusedAndTheOl
   };
   refused("damping.values", rclcpp::ParameterValue(Numbers{1.0, 2.0}),
           "parameter 'damping.values': wrong size: expected 6 numbers, or one for all, got 2; ");
-  // Lyrical's rclcpp compares numbers of arrays with their range itself.
-  const std::string reason = set("damping.values", rclcpp::ParameterValue(Numbers{kNan}));
-  EXPECT_TRUE(reason.find("range.") != std::string::npos ||
-              reason.find("parameter 'damping.values': joint shoulder_pan_joint: wrong value: "
-                          "expected a finite number, 0 or more [N m s/rad], got nan; ") == 0)
-      << reason;
+#if RCLCPP_VERSION_GTE(29, 0, 0)  // newer than jazzy: rclcpp compares arrays with ranges itself
+  refused("damping.values", rclcpp::ParameterValue(Numbers{kNan}), "floating point range");
+#else
+  refused("damping.values", rclcpp::ParameterValue(Numbers{kNan}),
+          "parameter 'damping.values': joint shoulder_pan_joint: wrong value: expected a finite "
+          "number, 0 or more [N m s/rad], got nan; ");
+#endif
   EXPECT_NE(set("damping.values", rclcpp::ParameterValue(Numbers{-1.0})), "");
   EXPECT_NE(set("damping.values", rclcpp::ParameterValue(Numbers{1e6})), "");
   EXPECT_NE(set("damping.rate", rclcpp::ParameterValue(0.0)), "");
