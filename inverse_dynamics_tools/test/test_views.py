@@ -56,7 +56,11 @@ def test_a_data_frame_is_a_recording(evaluation, arrays):
 @pytest.mark.parametrize(
     ("changed", "error", "expected"),
     [
-        ({"q": None}, BagError, "arrays: expected columns of position for 6 joints, shoulder_pan_joint, "),
+        (
+            {"q": None},
+            BagError,
+            "arrays: expected columns of position for 6 joints, shoulder_pan_joint, ",
+        ),
         (
             {"tau": np.full((1500, 6), np.inf)},
             BagError,
