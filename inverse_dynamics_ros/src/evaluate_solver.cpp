@@ -24,9 +24,15 @@ namespace {
 
 using inverse_dynamics_evaluation::Clock;
 using inverse_dynamics_evaluation::RunConfiguration;
+using inverse_dynamics_evaluation::Storage;
 
 Clock clockOf(const std::string& name) {
   return name == "header" ? Clock::kHeader : name == "receive" ? Clock::kReceive : Clock::kAuto;
+}
+
+Storage storageOf(const evaluate_solver::Params& params, Storage input) {
+  if (params.storage.empty()) return input;
+  return params.storage == "mcap" ? Storage::kMcap : Storage::kSqlite3;
 }
 
 // Checks parameters before any work.
@@ -92,21 +98,20 @@ void run(rclcpp::Node& node) {
 
   const std::vector<std::string> joints =
       inverse_dynamics_evaluation::recordedNames(robot, solver->jointNames());
-  const RecordedMotion motion = readMotion(
+  const auto motion = openMotion(
       params.input_bag,
       {params.input_topic, robot.file.empty() ? "" : robot.topic, joints, clockOf(params.clock)});
-  say(logger, "recording: " + params.input_bag + ", " + motion.topic + ": " +
-                  std::to_string(motion.log->size()) + " samples");
-
-  options.topic = motion.topic;
-  options.notes = motion.log->notes;
-  const Evaluation evaluation = evaluate(motion.log->recorded(), *solver, options);
+  options.topic = motion->topic;
+  options.progress = [](double) { requireNoInterrupt(); };
+  const Evaluation evaluation = evaluate(*motion->source, motion->options, *solver, options);
+  say(logger, "recording: " + params.input_bag + ", " + motion->topic + ": " +
+                  std::to_string(evaluation.table->size()) + " samples");
   say(logger, "accelerations: " + evaluation.accelerations.summary);
   say(logger, "effort means: " + evaluation.effort.summary());
   sayAll(logger, evaluation.notes, warnings.size());  // the solver's come first
 
-  writeTorques(params.output_bag, params.storage.empty() ? motion.storage : params.storage,
-               params.topic, motion, evaluation);
+  writeTorques(params.output_bag, storageOf(params, motion->storage), params.topic, *motion,
+               evaluation);
   say(logger,
       "written: " + params.output_bag + ": " + params.topic + " (computed)" +
           (evaluation.table->measured.size() > 0 ? ", " + params.topic + "_gt (measured)" : ""));

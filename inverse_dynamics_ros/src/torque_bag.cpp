@@ -3,7 +3,6 @@
 #include "torque_bag.hpp"
 
 #include <inverse_dynamics_evaluation/joint_state_writer.hpp>
-#include <rclcpp/duration.hpp>
 
 #include "interrupted.hpp"
 #include "output_bag.hpp"
@@ -13,6 +12,7 @@ namespace {
 
 using Eigen::Index;
 using inverse_dynamics_evaluation::SampleTable;
+using inverse_dynamics_evaluation::Storage;
 using trajectory_msgs::msg::JointTrajectory;
 using trajectory_msgs::msg::JointTrajectoryPoint;
 
@@ -21,67 +21,64 @@ std::vector<double> numbers(const Eigen::Ref<const Eigen::MatrixXd>& matrix, Ind
   return {column.data(), column.data() + column.size()};
 }
 
-// The trajectory whose first sample is k; k then is the first of the next one.
-JointTrajectory trajectory(const RecordedMotion& motion,
-                           const Eigen::Ref<const Eigen::MatrixXd>& qdd,
-                           const Eigen::Ref<const Eigen::MatrixXd>& effort, Index& k) {
-  const SampleTable& log = *motion.log;
-  const std::size_t message = motion.message[static_cast<std::size_t>(k)];
+// The joints of a trajectory whose first point is sample k of the table, with other efforts.
+JointTrajectory trajectory(const JointTrajectory& given, const SampleTable& table,
+                           const Eigen::Ref<const Eigen::MatrixXd>& effort, Index k) {
   JointTrajectory result;
-  result.header = motion.headers[message];
-  result.joint_names = log.joint_names;
-  for (; k < log.size() && motion.message[static_cast<std::size_t>(k)] == message; ++k) {
+  result.header = given.header;
+  result.joint_names = table.joint_names;
+  for (const JointTrajectoryPoint& original : given.points) {
     JointTrajectoryPoint point;
-    point.positions = numbers(log.q, k);
-    point.velocities = numbers(log.qd, k);
-    point.accelerations = numbers(qdd, k);
-    point.effort = numbers(effort, k);
-    point.time_from_start =
-        rclcpp::Duration::from_nanoseconds(log.receive_stamps[k] - motion.receive_stamps[message]);
+    point.positions = numbers(table.q, k);
+    point.velocities = numbers(table.qd, k);
+    point.accelerations = numbers(table.qdd, k);
+    point.effort = numbers(effort, k++);
+    point.time_from_start = original.time_from_start;
     result.points.push_back(point);
   }
   return result;
 }
 
 // As `ids` writes them.
-void writeJointStates(const std::string& target, const std::string& storage,
-                      const std::string& topic, const RecordedMotion& motion,
+void writeJointStates(const std::string& target, Storage storage, const std::string& topic,
                       const SampleTable& table) {
-  namespace recordings = inverse_dynamics_evaluation;
   OutputBag bag(target);
-  recordings::writeTorques(
-      bag.path().string(),
-      storage == "mcap" ? recordings::Storage::kMcap : recordings::Storage::kSqlite3,
-      {topic, motion.log->joint_names, motion.log->frame_id},
+  inverse_dynamics_evaluation::writeTorques(
+      bag.path().string(), storage, {topic, table.joint_names, table.frame_id},
       {static_cast<std::size_t>(table.size()), table.header_stamps.data(),
        table.receive_stamps.data(), table.q.data(), table.qd.data(), table.computed.data()},
       table.measured.data(), [](double) { requireNoInterrupt(); });
   bag.finish();
 }
 
-void writeTrajectories(const std::string& target, const std::string& storage,
-                       const std::string& topic, const RecordedMotion& motion,
+void writeTrajectories(const std::string& target, Storage storage, const std::string& topic,
+                       const std::vector<RecordedTrajectory>& trajectories,
                        const SampleTable& table) {
-  OutputBag bag(target, storage);
-  for (Index k = 0; k < table.size();) {
+  OutputBag bag(target, name(storage));
+  inverse_dynamics_evaluation::JointMatching matching(table.joint_names);
+  Index k = 0;  // the first sample of a trajectory
+  for (const auto& [given, received] : trajectories) {
     requireNoInterrupt();
-    const std::size_t message = motion.message[static_cast<std::size_t>(k)];
-    const std::int64_t received = motion.receive_stamps[message];
-    Index next = k;
-    if (table.measured.size() > 0) {
-      bag.write(trajectory(motion, table.qdd, table.measured, next), topic + "_gt", received);
+    const auto found = matching.match(given.joint_names);
+    if (given.points.empty() || found == inverse_dynamics_evaluation::JointMatching::Found::kNone) {
+      continue;  // left out
     }
-    bag.write(trajectory(motion, table.qdd, table.computed, k), topic, received);
+    if (table.measured.size() > 0) {
+      bag.write(trajectory(given, table, table.measured, k), topic + "_gt", received);
+    }
+    bag.write(trajectory(given, table, table.computed, k), topic, received);
+    k += static_cast<Index>(given.points.size());
   }
   bag.finish();
 }
 
 }  // namespace
 
-void writeTorques(const std::string& target, const std::string& storage, const std::string& topic,
+void writeTorques(const std::string& target, Storage storage, const std::string& topic,
                   const RecordedMotion& motion, const Evaluation& evaluation) {
-  const auto write = motion.type == kJointState ? writeJointStates : writeTrajectories;
-  write(target, storage, topic, motion, *evaluation.table);
+  const SampleTable& table = *evaluation.table;
+  if (motion.trajectories.empty()) return writeJointStates(target, storage, topic, table);
+  writeTrajectories(target, storage, topic, motion.trajectories, table);
 }
 
 }  // namespace inverse_dynamics_ros

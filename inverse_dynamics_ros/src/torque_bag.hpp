@@ -18,7 +18,8 @@ namespace inverse_dynamics_ros {
 /// their efforts are others. Whole or not at all.
 ///
 /// @throws UserError: the target exists or can't be written; Interrupted.
-void writeTorques(const std::string& target, const std::string& storage, const std::string& topic,
-                  const RecordedMotion& motion, const Evaluation& evaluation);
+void writeTorques(const std::string& target, inverse_dynamics_evaluation::Storage storage,
+                  const std::string& topic, const RecordedMotion& motion,
+                  const Evaluation& evaluation);
 
 }  // namespace inverse_dynamics_ros

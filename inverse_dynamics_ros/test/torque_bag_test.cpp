@@ -83,26 +83,26 @@ TEST_F(TorqueBag, RefusesAStorageThatIsNotInstalled) {
 }
 
 TEST_F(TorqueBag, IsLeftOutWhenTheUserInterrupts) {
-  RecordedMotion motion;
-  motion.type = kJointState;
-  motion.log = std::make_shared<inverse_dynamics_evaluation::SampleTable>();
-  motion.log->joint_names = {"a"};
-  motion.log->resize(1, 3, {});
-  motion.log->header_stamps.setLinSpaced(0, 2);
-  motion.log->receive_stamps = motion.log->header_stamps;
-  for (auto* columns : {&motion.log->q, &motion.log->qd, &motion.log->effort}) columns->setZero();
-  motion.log->complete(inverse_dynamics_evaluation::Clock::kHeader);
+  using inverse_dynamics_evaluation::Storage;
+  const RecordedMotion motion;
   Evaluation evaluation;
-  evaluation.table = motion.log;
+  evaluation.table = std::make_shared<inverse_dynamics_evaluation::SampleTable>();
+  inverse_dynamics_evaluation::SampleTable& table = *evaluation.table;
+  table.joint_names = {"a"};
+  table.resize(1, 3, {});
+  table.header_stamps.setLinSpaced(0, 2);
+  table.receive_stamps = table.header_stamps;
+  for (auto* columns : {&table.q, &table.qd, &table.effort}) columns->setZero();
+  table.complete(inverse_dynamics_evaluation::Clock::kHeader);
 
   ASSERT_FALSE(rclcpp::ok());  // as after Ctrl-C
-  EXPECT_THROW(
-      writeTorques((folder_ / "result").string(), "sqlite3", "/torques", motion, evaluation),
-      Interrupted);
+  EXPECT_THROW(writeTorques((folder_ / "result").string(), Storage::kSqlite3, "/torques", motion,
+                            evaluation),
+               Interrupted);
   EXPECT_EQ(entries(), 0U);
 
   rclcpp::init(0, nullptr);
-  writeTorques((folder_ / "result").string(), "sqlite3", "/torques", motion, evaluation);
+  writeTorques((folder_ / "result").string(), Storage::kSqlite3, "/torques", motion, evaluation);
   rclcpp::shutdown();
   EXPECT_TRUE(fs::exists(folder_ / "result" / "metadata.yaml"));
 }
