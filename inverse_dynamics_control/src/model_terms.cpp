@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFast = 1e3;  // rad/s: where all of friction but the viscous part is constant
 
-/// What shares leave, of each joint.
+/// The rest that shares leave, for each joint.
 OwnedVector left(const Shares& shares, const std::string& where,
                  const std::vector<std::string>& joint_names) {
   OwnedVector each = shares.values();

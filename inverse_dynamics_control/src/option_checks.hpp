@@ -12,7 +12,7 @@
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
-/// What the numbers of an option must be.
+/// Valid range of an option's numbers.
 enum class Range {
   kAny,               ///< not NaN
   kNotNegative,       ///< finite and >= 0

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What the arm of a node of ROS carries: parameters `payload.*`, topic `~/payload`.
+/// The body that the arm of a ROS node carries: parameters `payload.*`, topic `~/payload`.
 ///
-/// A template that takes the types of ROS from the node: no header of ROS is needed here.
+/// A template that takes ROS types from the node, so that no ROS header is needed here.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@ inline namespace v2 {
 
 /// Gives a solver the body that the parameters `payload.*` or the topic `~/payload` say last.
 ///
-/// A change takes `payload.ramp_time` of the node's clock, in steps of 10 ms of its executor. What
-/// can't be a body is refused with a reason, and changes nothing.
+/// A change takes `payload.ramp_time` of the node's clock, in steps of 10 ms of its executor. An
+/// impossible body is refused with a reason, and changes nothing.
 ///
 /// Threads: all methods may be called while the node's executor runs.
 ///
@@ -76,7 +76,7 @@ class CarriedBody {
     state_->tip = std::move(tip);
   }
 
-  /// What is carried, or will be when the ramp has ended.
+  /// The body that is carried once the ramp has ended.
   RigidBody body() const {
     const std::lock_guard<std::mutex> lock(state_->mutex);
     return state_->body;
@@ -87,7 +87,7 @@ class CarriedBody {
   using Values = typename Watch::Values;
   static constexpr std::chrono::milliseconds kStep{10};
 
-  // Callbacks that are running keep it.
+  // Running callbacks keep it alive.
   struct State {
     explicit State(Log given) : log(std::move(given)) {}
 
@@ -117,7 +117,7 @@ class CarriedBody {
         log(from + ": ignored: " + error.what());
       }
     }
-    // A clock that jumps isn't a reason for torques to do so.
+    // Torques don't jump when the clock does.
     void advanceTo(std::int64_t now) {
       const std::lock_guard<std::mutex> lock(mutex);
       const double seconds = 1e-9 * static_cast<double>(now - std::exchange(last, now));

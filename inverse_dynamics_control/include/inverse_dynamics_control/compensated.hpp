@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What the robot compensates by itself, so that nothing is compensated twice.
+/// Terms that the robot compensates by itself, so that nothing is compensated twice.
 ///
 ///     Compensated panda;          // its effort interface adds gravity and friction on its own
 ///     panda.gravity = true;

@@ -32,7 +32,7 @@ struct ReleaseOptions {
 /// Real time: all methods but the constructor: no allocation, lock, exception or system call.
 class ContactDetector {
  public:
-  /// @param thresholds   n, > 0, infinity for a joint that isn't looked at; N m (prismatic N);
+  /// @param thresholds   n, > 0, infinity for a joint that is ignored; N m (prismatic N);
   ///                     ContactThresholds::torques.
   /// @param joint_names  n, for the text of errors.
   /// Throws inverse_dynamics_solver::InvalidParameterValueException: wrong size or value.

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What all laws share: their options, the safe torque, the limits of the output.
+/// Base of all laws: options, the safe torque, limits of the output.
 ///
 ///     LawOptions options;
 ///     options.limits.effort = effort_limits;    // of the data sheet
 ///     options.damping = damping;                // for the safe torque
 ///     ComputedTorque law(solver, gains, options);
 ///
-/// Whatever goes in, what comes out is finite and within the limits. Where the law's own torque
-/// can't be had, the output is the safe torque
+/// Whatever the input, the output is finite and within the limits. If the law's own torque isn't
+/// available, the output is the safe torque
 ///
 ///     tau = g(q) - damping qd
 ///
@@ -34,7 +34,7 @@ inline namespace v2 {
 
 /// Options of every law.
 struct LawOptions {
-  /// What the robot adds by itself; the law leaves it out.
+  /// Terms that the robot adds by itself; the law omits them.
   Compensated compensated;
 
   /// Limits of the output.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What touches the robot, as torques of its joints: what both estimators share.
+/// External torques of the joints: the base of both estimators.
 ///
 ///     EstimatorOptions options;
 ///     options.gain = Eigen::VectorXd::Constant(7, 60.0);          // 1/s
@@ -20,8 +20,7 @@
 /// An estimate follows the external torque of its joint with the time constant 1 / gain, in which it
 /// rises to 1 - 1/e of a step: exactly with measured velocities, as a first-order filter; within 2 %
 /// with velocities from positions, for gains up to 0.3 tracking and periods up to 2 / tracking. An
-/// estimate holds whatever the model doesn't know: errors of its friction, loads that it wasn't told
-/// of.
+/// estimate contains everything that the model lacks: errors of friction, unknown loads.
 #pragma once
 
 #include <memory>
@@ -53,7 +52,7 @@ const char* text(EstimateStatus status) noexcept;
 
 /// Where velocities come from.
 enum class VelocitySource {
-  kPositions,  ///< from positions, by a MotionTracker; JointState::qd isn't looked at
+  kPositions,  ///< from positions, by a MotionTracker; JointState::qd is ignored
   kMeasured,   ///< JointState::qd, where the robot has good ones, not delayed
 };
 
@@ -68,11 +67,11 @@ struct EstimatorOptions {
   /// 1 / gain. Lower: less noise of encoders, and more overshoot.
   double tracking = 200.0;
 
-  /// What the measured efforts don't contain. A Panda's torque sensors are behind its gears:
+  /// Terms that the measured efforts lack. A Panda's torque sensors are behind its gears:
   /// `friction = true`.
   Compensated compensated;
 
-  /// What the friction model may be wrong by, n, finite, >= 0; N m (prismatic N); empty: nothing.
+  /// Tolerance of the friction model, n, finite, >= 0; N m (prismatic N); empty: none.
   /// A torque within the band counts as zero, one beyond counts by what lies beyond. Where friction
   /// isn't known at all, the band is all of it. For contactThresholds(): empty.
   OwnedVector friction_band;
@@ -103,7 +102,7 @@ class ExternalTorqueEstimator {
   ///
   /// @param effort  n; torques that the actuators applied since the last sample: as measured, or
   ///                the command that was held; N m (prismatic N).
-  /// @param period  s since the last sample; of the first one it isn't looked at.
+  /// @param period  s since the last sample; ignored for the first one.
   EstimateStatus update(const JointState& state, const ConstVectorRef& effort,
                         double period) noexcept;
 

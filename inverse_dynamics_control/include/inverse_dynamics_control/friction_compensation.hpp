@@ -23,7 +23,7 @@
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
-/// Whose velocity v decides about friction.
+/// The velocity v from which friction is computed.
 enum class FrictionSource {
   kNone,               ///< no friction compensation
   kReferenceVelocity,  ///< the desired one: free of noise, no feedback. The choice for tracking.

@@ -21,7 +21,7 @@ using inverse_dynamics_solver::ConstVectorRef;
 using inverse_dynamics_solver::InverseDynamicsSolver;
 using inverse_dynamics_solver::VectorRef;
 
-/// The model that the laws share, with scratch memory of its own. Not thread-safe.
+/// The model that the laws share, with its own scratch memory. Not thread-safe.
 ///
 /// Real time: methods don't allocate, lock or call the system, and throw only what a faulty solver
 /// throws.
@@ -56,10 +56,10 @@ class ModelTerms {
   void components(const ConstVectorRef& q, const ConstVectorRef& qd,
                   inverse_dynamics_solver::MatrixRef H, VectorRef bias);
 
-  /// What is left of `g(q)`, n.
+  /// The part of `g(q)` that the robot doesn't compensate, n.
   void gravity(const ConstVectorRef& q, VectorRef g) const;
 
-  /// What is left of `f(q, v)`, n.
+  /// The part of `f(q, v)` that the robot doesn't compensate, n.
   void friction(const ConstVectorRef& q, const ConstVectorRef& v, VectorRef f) const;
 
   /// Of joint j: the torque of damping to the reference that the arm lacks beside the rest of its friction,

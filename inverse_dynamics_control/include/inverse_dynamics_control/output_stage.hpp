@@ -17,7 +17,7 @@
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
-/// What the actuators may be asked for.
+/// Limits of the actuators.
 struct OutputLimits {
   /// Greatest torque of each joint, n, > 0; N m (prismatic N); infinity: no limit. Required.
   OwnedVector effort;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A rigid body at the tip that comes and goes while a control loop computes, without a jump.
+/// A rigid body at the tip that may change while a control loop runs, without a jump of torques.
 ///
 ///     PayloadRamp carried(solver, RigidBody(), 1.0);    // nothing yet; a change takes 1 s
 ///     carried.aimAt(part);                              // a message, a parameter
@@ -67,7 +67,7 @@ class PayloadRamp {
   /// Goes on with the change. @param seconds  since the last call.
   void advance(double seconds);
 
-  /// What the change ends with.
+  /// The body at the end of the change.
   RigidBody target() const;
 
  private:

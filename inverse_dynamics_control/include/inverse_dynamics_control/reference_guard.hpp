@@ -24,7 +24,7 @@
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
-/// What a reference may ask for, n numbers each; infinity: no limit.
+/// Limits of a reference, n numbers each; infinity: no limit.
 struct ReferenceLimits {
   OwnedVector lower;     ///< rad (prismatic m)
   OwnedVector upper;     ///< rad (prismatic m), not below `lower`

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What goes into a law: the measured state and the desired motion, one number per joint.
+/// Inputs of a law: the measured state and the desired motion, one number per joint.
 ///
 ///     JointState state(solver->jointCount());       // once, before the control loop
 ///     state.q[0] = position_interface.get_value();  // in each cycle: no allocation

@@ -44,7 +44,7 @@ enum class WrenchStatus {
 /// system call. Threads: safe.
 const char* text(WrenchStatus status) noexcept;
 
-/// What the estimate rests on.
+/// Assumptions of the estimate.
 struct WrenchOptions {
   /// Standard deviation of the external torques, n, finite, > 0; N m (prismatic N). Required;
   /// ContactThresholds::noise has it.
@@ -73,7 +73,7 @@ class TipWrench {
   WrenchStatus update(const Eigen::Ref<const Eigen::VectorXd>& q,
                       const Eigen::Ref<const Eigen::VectorXd>& torques) noexcept;
 
-  /// What the tip exerts on its surroundings, at its origin, in the axes of the root frame.
+  /// The wrench that the tip exerts on its surroundings, at its origin, in the axes of the root frame.
   const WrenchInRoot& wrench() const noexcept { return wrench_; }
 
   /// Signal-to-noise ratios, 6, the greatest first; see the head of this file.
