@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What installed packages have: the ament index, the same in every ROS 2 and in builds without it.
+/// Resources of installed packages: the ament index, the same in every ROS 2 and in builds without it.
 ///
 /// A package PACKAGE below PREFIX that has something of a kind has the file
 /// `PREFIX/share/ament_index/resource_index/KIND/PACKAGE` [ament_cmake, doc/resource_index.md].

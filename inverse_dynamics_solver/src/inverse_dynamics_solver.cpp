@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// What the parameters state, but hardly mean.
+/// Warnings about implausible parameters.
 std::vector<std::string> doubts(const InverseDynamicsSolver& solver,
                                 const Configuration& configuration) {
   std::vector<std::string> texts = {doubtOf(configuration.gravity)};

@@ -19,7 +19,7 @@
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
-/// Of one state. What throws is out of line, so that the checks are inlined.
+/// A call for one state. Throwing functions are out of line, so that the checks are inlined.
 class MethodCall {
  public:
   /// @throws UninitializedException
@@ -85,7 +85,7 @@ class MethodCall {
   const InverseDynamicsSolver& solver_;
 };
 
-/// Of many states.
+/// A call for many states.
 class BatchCall : public MethodCall {
  public:
   /// @param count  N, that of the first argument.

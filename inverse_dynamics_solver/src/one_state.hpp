@@ -64,7 +64,7 @@ class StateWriter {
   }
 
  private:
-  // What Eigen::Ref can look at.
+  // Whether Eigen::Ref can refer to it.
   bool isInPlace() const { return to_.row_step == 1 && to_.column_step >= to_.rows; }
 
   const StridedMatrices to_;

@@ -46,7 +46,7 @@ ParameterValue listOf(const std::vector<LocatedValue>& entries) {
   return allOf<std::string>(scalars);
 }
 
-/// What stands in ROS 2 parameter files between the name of a node and those of its parameters.
+/// Key between a node's name and its parameters in ROS 2 parameter files.
 const std::string kRosParameters = "ros__parameters.";
 
 std::map<std::string, ParameterValue> valuesOf(const LocatedValue& document) {

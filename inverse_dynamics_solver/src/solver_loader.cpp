@@ -22,7 +22,7 @@ using PluginLoader = pluginlib::ClassLoader<InverseDynamicsSolver>;
 const char* const kSource =
     "install its package, or source the workspace that has it: source install/local_setup.bash";
 
-/// What is installed: package and prefix of each plugin description.
+/// Installed plugin descriptions: package and prefix.
 using PluginIndex = std::map<std::string, std::string>;
 
 /// pluginlib's loader isn't thread-safe.

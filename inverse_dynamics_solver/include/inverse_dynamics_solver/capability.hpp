@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What only some solvers can do: small classes beside InverseDynamicsSolver, found by dynamic_cast.
+/// Capabilities that only some solvers have: small classes besides InverseDynamicsSolver, found by dynamic_cast.
 ///
 ///     if (const auto* kinematics = dynamic_cast<const Kinematics*>(solver.get())) {
 ///       Eigen::MatrixXd J = kinematics->getTipJacobian(q);

@@ -10,7 +10,7 @@
 ///         const auto robot = currentRobot();                      // once per call
 ///         ...
 ///
-/// What is made of several such functions reads the robot as often: such a solver overrides
+/// A default that calls several such functions reads the robot several times: such a solver overrides
 /// computeTorques() and computeDynamicComponents().
 #pragma once
 
@@ -31,7 +31,7 @@ inline namespace v2 {
 /// Keeps what may change about a robot, and lets one thread change it after the other.
 class ChangingConditions : public Payload, public VariableGravity {
  protected:
-  /// What a robot carries and stands on.
+  /// Bodies that a robot carries, and the motion of its base.
   struct Conditions {
     Payloads payloads;
     BaseMotion base;
@@ -47,7 +47,7 @@ class ChangingConditions : public Payload, public VariableGravity {
 
   ChangingConditions() = default;
 
-  /// What the parameters state, of a robot with this gravity. Throws as readPayloads().
+  /// Conditions from parameters, for a robot with this gravity. Throws as readPayloads().
   static std::shared_ptr<const Conditions> readConditions(const Configuration& configuration,
                                                           const Eigen::Vector3d& gravity);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What the interface and its solvers throw: one family, one class per reaction a caller may have.
+/// Exceptions of the interface and its solvers: one family, one class per reaction of a caller.
 ///
 ///     try {
 ///       solver->initialize(parameters, "ids");

@@ -20,7 +20,7 @@ inline namespace v2 {
 /// The axes in which a wrench is expressed.
 enum class WrenchFrame { kRoot, kTip };
 
-/// What the tip exerts **on its surroundings**: the opposite of what a force-torque sensor at the tip
+/// A wrench that the tip exerts **on its surroundings**: the opposite of what a force-torque sensor at the tip
 /// feels when something pushes [docs/notation.md, with a picture].
 ///
 /// The frame is part of the type, so that one can't be taken for the other. It gives the axes; the

@@ -221,7 +221,7 @@ class InverseDynamicsSolver {
  protected:
   InverseDynamicsSolver() = default;
 
-  /// What configure() tells the base class.
+  /// Result of configure() for the base class.
   struct JointInfo {
     std::vector<std::string> joint_names;  ///< in order along the chain
     std::vector<std::string> warnings;     ///< one sentence each

@@ -116,7 +116,7 @@ class Parameters {
   template <class T>
   T require(const std::string& name) const;
 
-  /// The same parameters, which tell each name that is asked for.
+  /// The same parameters, reporting each requested name.
   Parameters watched(std::function<void(const std::string& name)> asked) const;
 
   /// The same parameters, of which a solver must know all: initialize() throws

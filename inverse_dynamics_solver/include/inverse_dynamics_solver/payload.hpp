@@ -45,7 +45,7 @@ bool operator==(const RigidBody& a, const RigidBody& b);
 /// The ten inertial parameters of a body in the tip frame.
 chain_dynamics::SpatialInertia<double> inTipFrame(const RigidBody& body);
 
-/// What makes a body impossible, for errorText(): the field, and the rest of the message.
+/// Why a body is impossible, for errorText(): the field, and the rest of the message.
 struct BodyDefect {
   std::string field;  ///< "mass", "center_of_mass", "inertia" or "frame"
   std::string expected, got, remedy;

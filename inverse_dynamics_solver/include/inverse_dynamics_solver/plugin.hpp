@@ -21,7 +21,7 @@ inline namespace v2 {
 using MakePlugin = void* (*)();
 using PluginClasses = std::map<std::pair<std::string, std::string>, MakePlugin>;
 
-/// What this library has, by base class and class. Hidden: else libraries would share one table.
+/// Plugins of this library, by base class and class. Hidden: else libraries would share one table.
 [[gnu::visibility("hidden")]] inline PluginClasses& pluginClassesOfThisLibrary() {
   static PluginClasses classes;
   return classes;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// For solvers over a library that writes to memory of its own: only the library is left to add.
+/// For solvers over a library that keeps state: only the calls of the library are left to add.
 ///
 ///     class MySolver : public inverse_dynamics_solver::PooledSolver {
 ///       WorkspaceMaker workspaceMaker(const chain_dynamics::Chain& chain) const override {
@@ -60,7 +60,7 @@ class PooledSolver : public InverseDynamicsSolver, public ChangeableRobot<Pooled
  protected:
   using WorkspaceMaker = std::function<std::unique_ptr<Workspace>()>;
 
-  /// What makes the workspaces of a chain; it is called by many threads, even at the same time.
+  /// Makes workspaces of a chain; many threads may call it at the same time.
   virtual WorkspaceMaker workspaceMaker(const chain_dynamics::Chain& chain) const = 0;
 
   /// @name For the capabilities of a solver

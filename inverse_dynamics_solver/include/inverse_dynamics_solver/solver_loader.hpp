@@ -18,7 +18,7 @@ inline namespace v2 {
 
 /// Finds the solver plugins of the sourced workspaces and makes solvers of them.
 ///
-/// What is installed is looked up once, on construction. A plugin's library stays open until the
+/// Installed plugins are looked up once, on construction. A plugin's library stays open until the
 /// end of the program, so solvers and the exceptions that they throw may outlive the loader.
 /// Threads: safe.
 ///
@@ -34,7 +34,7 @@ class SolverLoader {
   /// Names of the installed plugins, sorted; empty if no workspace is sourced.
   std::vector<std::string> availableSolvers() const;
 
-  /// What a plugin's package says of it. Throws as load().
+  /// Description of a plugin by its package. Throws as load().
   std::string description(const std::string& name) const;
 
   /// A new solver, not initialized.

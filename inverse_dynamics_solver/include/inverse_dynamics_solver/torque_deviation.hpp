@@ -17,7 +17,7 @@
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
-/// What an identified model knows about its own errors: numbers of its model file
+/// An identified model's statement of its own errors: numbers of its model file
 /// [docs/model_file.md].
 ///
 /// They are of the robot as it was identified, without payload, within seenRanges(). Another day,

@@ -45,12 +45,12 @@ class VariableGravity : public Capability {
   Eigen::Vector3d baseAcceleration() const;
 
  protected:
-  /// What the root link feels.
+  /// Apparent gravity of the root link.
   struct BaseMotion {
     Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
     Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
 
-    /// What the robot's dynamics depend on.
+    /// Gravity less acceleration, on which the dynamics depend.
     Eigen::Vector3d apparentGravity() const { return gravity - acceleration; }
   };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// For solvers over a library that writes to memory of its own: a pool of such memory, so that
+/// For solvers over a library that keeps state: a pool of workspaces, so that
 /// many threads may compute at once, without lock or allocation.
 ///
 ///     WorkspacePool<Workspace> pool(readMaxThreads(configuration),
