@@ -46,7 +46,7 @@ struct Curved {
   double distance(const ArmFit& fit, Index j) const {
     return is_logarithm ? std::log(of(fit, j) / center) : of(fit, j) - center;
   }
-  /// Of the longest step: the width of friction, or a factor e.
+  /// Length of the longest step: the width of friction, or a factor e.
   double unit(const ArmFit& fit, Index j) const {
     return is_logarithm ? 1.0 : fit.friction[static_cast<std::size_t>(j)].width;
   }
@@ -56,7 +56,7 @@ struct Curved {
   }
 };
 
-/// Those of a joint, of which `greatest` is the greatest velocity.
+/// The curved unknowns of a joint. @param greatest  its greatest velocity.
 std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index joint, double greatest) {
   using namespace own_column;
   const FrictionPrior& prior = options.friction;
@@ -78,7 +78,7 @@ std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index joint, do
   return curved;
 }
 
-/// What is known of the coefficient of a column that torques are linear in.
+/// Prior of the coefficient of a column that torques are linear in.
 OwnColumn linearColumn(Index column, const FrictionPrior& prior) {
   if (column == own_column::kOne) return {false, kInfinity, 0, 1e4};  // a joint may stand still
   if (column == own_column::kLoad) return {true, prior.most_load, 0, prior.load};
@@ -94,7 +94,7 @@ std::vector<Index> linearColumns(FrictionTerms terms) {
   return columns;
 }
 
-/// Of what has friction: of motors, `coupling qd`, or of joints.
+/// Greatest velocities where friction acts: of motors, `coupling qd`, or of joints.
 void addGreatest(const ConstStates& qd, const OwnedMatrix& coupling, VectorXd& greatest) {
   for (Index k = 0; k < qd.count; ++k) {
     for (Index j = 0; j < qd.joints; ++j) {
@@ -154,7 +154,7 @@ class Rounds {
     }
   }
 
-  /// Of all unknowns at a fit, or of those that it is linear in.
+  /// Prior of all unknowns at a fit, or of those that it is linear in.
   Prior prior(const ArmFit& fit, bool linear) const {
     Prior prior;
     for (const LinkPrior& link : links_) prior.links.push_back(link.link);
@@ -283,7 +283,7 @@ class Rounds {
     return sum;
   }
 
-  /// Of each unknown that torques aren't linear in, and joint, from the last fit.
+  /// Step of each curved unknown and joint, from the last fit.
   MatrixXd stepOf(const RegressorGram& gram, const ArmFit& arm) const {
     const Fit fit = consistentFit(gram, prior(arm, false), fitOptions(1), &last_);
     MatrixXd by(static_cast<Index>(curvedOf(0).size()), joints());

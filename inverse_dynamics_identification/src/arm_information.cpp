@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What samples with correlated errors say of an arm's unknowns.
+/// Information about an arm's unknowns from samples with correlated errors.
 
 #include <chain_dynamics/error.hpp>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What ArmFitter does with samples: sums of their rows, and torques.
+/// Sums of ArmFitter's samples, and torques.
 
 #include <algorithm>
 #include <chain_dynamics/error.hpp>

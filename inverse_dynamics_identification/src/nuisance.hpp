@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What is estimated with a body: an offset of each joint, and deviations of the arm's model.
+/// Unknowns besides the body: an offset of each joint, and deviations of the arm's model.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 namespace inverse_dynamics_identification {
 inline namespace v2 {
 
-/// What is known of an offset: N m, and its square.
+/// Prior of an offset: N m, and its square.
 struct OffsetPrior {
   double mean = 0.0;
   double variance = 1.0;

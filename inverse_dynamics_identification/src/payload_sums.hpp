@@ -81,7 +81,7 @@ class PayloadSums {
     return blocks_ - (last_is_short ? 1 : 0);
   }
 
-  /// Of one of so many blocks.
+  /// Sums of a joint in one of so many blocks.
   void get(std::size_t block, std::size_t joint, std::size_t blocks, JointSums& sum) const {
     sum = at(block, joint);
     if (block + 1 == blocks && blocks < blocks_) sum += at(blocks, joint);

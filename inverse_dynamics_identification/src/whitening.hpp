@@ -46,7 +46,7 @@ class NoiseFilter {
     return innovation / std::sqrt(variance_);
   }
 
-  /// The same of any number of columns, in place.
+  /// The same for any number of columns, in place.
   void whiten(Eigen::VectorXd& columns, Eigen::VectorXd& state) const {
     const double scale = 1.0 / std::sqrt(variance_);
     for (Eigen::Index c = 0; c < columns.size(); ++c) {

@@ -65,7 +65,7 @@ class ArmData {
   std::vector<Block> blocks_;
 };
 
-/// What is known of friction beforehand. Velocities are shares of a joint's greatest.
+/// Prior of friction. Velocities are shares of a joint's greatest.
 struct FrictionPrior {
   double width = 0.05;         ///< of the step
   double width_factor = 2.7;   ///< by which it may well differ
@@ -78,10 +78,10 @@ struct FrictionPrior {
   double stribeck_velocity = 0.1;  ///< where the step has fallen
 };
 
-/// How far a drive gain may well be from where its fit starts: a factor.
+/// Prior of a drive gain: a factor by which it may differ from its starting value.
 constexpr double kDriveGainFactor = 3;
 
-/// How to fit.
+/// Options of a fit.
 struct ArmFitOptions {
   FrictionTerms terms = FrictionTerms::kStep;
   double prior_strength = 100;  ///< gamma [consistent_fit.hpp]

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What the identified model of an arm may be wrong by, in torques.
+/// Uncertainty of the torques of an identified model.
 ///
 ///     ArmDeviations deviations(solver, uncertainty);
 ///     deviations.compute(q, qd, qdd, D);                  // K x n

@@ -39,7 +39,7 @@ inline namespace v2 {
 using chain_dynamics::OwnedMatrix;
 using chain_dynamics::OwnedVector;
 
-/// What is known beforehand of the coefficient x of a joint's own column.
+/// Prior of the coefficient x of a joint's own column.
 ///
 /// The penalty is `-log(x) - log(most - x) + ((x - center) / deviation)^2`, of which those terms
 /// are there that are asked for. A column without any must be determined by the data.
@@ -52,7 +52,7 @@ struct OwnColumn {
   static OwnColumn positive() { return {true}; }
 };
 
-/// What the fit starts from and is drawn to.
+/// Priors, from which the fit also starts.
 struct Prior {
   std::vector<LinkParameters> links;  ///< n, positive definite each: linkPrior()
   std::vector<OwnColumn> own;         ///< of joint 1, of joint 2, ...; as many for each
@@ -61,7 +61,7 @@ struct Prior {
   std::vector<Eigen::Index> columns = {};
 };
 
-/// How to fit.
+/// Options of a fit.
 struct FitOptions {
   double prior_strength = 100;  ///< gamma > 0
   int noise_iterations = 4;     ///< fits, with an estimate of the noise after each

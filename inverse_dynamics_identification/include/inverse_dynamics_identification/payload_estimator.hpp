@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What the tip carries: mass, center of mass and inertia from a few seconds of motion.
+/// The body at the tip: mass, center of mass and inertia from a few seconds of motion.
 ///
 ///     PayloadEstimator estimator(solver, options);                  // options.noise is required
 ///     while (moving) estimator.update(time, q, qd, qdd, effort);    // each cycle
 ///     PayloadEstimate found(n);
 ///     if (estimator.estimate(found) == PayloadStatus::kOk) carrier->setPayload("load", found.body());
 ///
-/// What is measured beyond the torques of the arm's model is linear in the ten parameters of a body
+/// Measured minus computed torques of the arm are linear in the ten parameters of a body
 /// in the tip frame [tip_regressor.hpp],
 ///
 ///     measured - computed = Y(q, qd, qdd) [m, mc, I] + offset + noise,
@@ -40,7 +40,7 @@
 /// directions that a load acts in. Where `arm` is given, V_noise is that of noise and deviations
 /// together. Student's t has (blocks - 1) (V / V_jackknife)^2 degrees of freedom
 /// [Welch 1947; Satterthwaite 1946]. Intervals are never narrower than those of V_noise, which have no
-/// limit in a direction that no sample tells anything of.
+/// limit in an unobservable direction.
 ///
 /// **Friction that grows with load** isn't linear in the body. Set the estimate as a payload of the
 /// solver, name it in `options.carried`, and estimate again from the same samples: two or three times.
@@ -59,7 +59,7 @@
 namespace inverse_dynamics_identification {
 inline namespace v2 {
 
-/// What the estimate rests on.
+/// Assumptions of the estimate.
 struct PayloadOptions {
   ResidualNoise noise;  ///< of the torques; required
 
@@ -69,7 +69,7 @@ struct PayloadOptions {
   /// with the rest.
   chain_dynamics::OwnedVector offset_deviation;
 
-  /// What the model of the arm may be wrong by; empty: no deviations are estimated with the body.
+  /// Uncertainty of the arm's model; empty: no deviations are estimated with the body.
   ArmUncertainty arm;
 
   /// The part of the solver's payloads that belongs to the estimate: its torques are among those

@@ -44,7 +44,7 @@ double logDeterminant(const Eigen::Matrix4d& P);
 /// Second derivatives of `-log det P` by the ten parameters, `tr(P^-1 E_k P^-1 E_l)`, of P^-1.
 Eigen::Matrix<double, 10, 10> logDeterminantHessian(const Eigen::Matrix4d& inverse);
 
-/// What a body must at least be so that it can be a prior.
+/// Least mass and inertia of a prior.
 struct LinkFloor {
   double mass = 0.05;    ///< kg
   double radius = 0.01;  ///< m; root mean square distance of the mass from each principal plane

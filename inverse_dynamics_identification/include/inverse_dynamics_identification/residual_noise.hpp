@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What the difference of measured and computed torques looks like where nothing is carried.
+/// Noise of measured minus computed torques, without a payload.
 ///
 ///     ResidualNoise noise = residualNoise(time, measured - computed);   // (N,) s, n x N N m
 ///
