@@ -40,7 +40,7 @@ class PathDynamics {
   void room(Eigen::Index k, double z, Room& room) const;
   Room emptyRoom() const;
 
-  /// How far a limit is passed within each interval, as a share of it, with squared speeds z at the
+  /// Greatest excess over a limit within each interval, as a share of it, with squared speeds z at the
   /// points: in its middle; at three places where the path bends; at seven where a joint turns back,
   /// and friction steps.
   Eigen::VectorXd excess(const Eigen::Ref<const Eigen::VectorXd>& z) const;

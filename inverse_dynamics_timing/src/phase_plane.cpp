@@ -49,7 +49,7 @@ void PhasePlane::addLimits(Index j, double p, double r, const Room& room, double
   planes_.add(-p - of_y * room.down_slope[j], -r - of_x * room.down_slope[j], room.down[j]);
 }
 
-/// What limits demand of the squared speeds x and y at the ends of interval k, where `u = m (y - x)`,
+/// Limits of the squared speeds x and y at the ends of interval k, where `u = m (y - x)`,
 /// `m = 1 / (2 ds)`.
 void PhasePlane::addInterval(Index k) {
   const double m = 0.5 / (dynamics_.s(k + 1) - dynamics_.s(k));
