@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Python objects by the names that annotations have for them: signatures of bound functions say
-/// what is passed, and the types of the module are made from signatures.
+/// Python objects named as in annotations: signatures of bound functions state the types of their
+/// arguments, and the stubs of the module are generated from signatures.
 #pragma once
 
 #include <pybind11/numpy.h>

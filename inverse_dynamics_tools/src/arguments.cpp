@@ -53,7 +53,7 @@ void raiseRefusal(const Function& function, PyObject* const* arguments, Py_ssize
   PyErr_SetObject(py::type::handle_of(error).ptr(), error.ptr());
 }
 
-/// What made() returns, or null where it raises.
+/// Returns made(), or null if it raises.
 template <class Make>
 PyObject* orRaised(const Make& made) {
   try {
@@ -127,7 +127,7 @@ py::object explained(const py::object& bound, const std::string& place) {
   return py::reinterpret_steal<py::object>(reinterpret_cast<PyObject*>(function));
 }
 
-// Instead of memory for an object that isn't there.
+// Called where pybind11 would allocate an object without constructing it.
 void* refuseWithoutInit(std::size_t /*size*/) {
   throw py::type_error("an object without __init__; make it by calling its class");
 }

@@ -70,7 +70,7 @@ inline Map columns(Array& array) {
   return {array.mutable_data(), n, array.ndim() == 1 ? 1 : array.shape(0)};
 }
 
-/// What compute() returns, without the interpreter's lock.
+/// Returns compute(), called without the interpreter's lock.
 template <class Compute>
 auto unlocked(const Compute& compute) {
   const pybind11::gil_scoped_release release;
@@ -94,7 +94,7 @@ inline Array rowsOf(chain_dynamics::OwnedMatrix matrix) {
 
 namespace pybind11::detail {
 
-/// Of arguments: numbers alone.
+/// Accepts only numbers as arguments.
 template <>
 struct type_caster<inverse_dynamics_tools::Array> : pyobject_caster<inverse_dynamics_tools::Array> {
   bool load(handle source, bool convert) {

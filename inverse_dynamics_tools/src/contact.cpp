@@ -81,7 +81,7 @@ std::tuple<Array, Mask> runEstimator(ExternalTorqueEstimator& estimator, const A
   return {torques, valid};
 }
 
-/// What isn't an estimate isn't looked at: neither as a torque nor as time without contact.
+/// Invalid estimates are skipped: they count neither as torques nor as time without contact.
 Mask runDetector(ContactDetector& detector, const Array& time, const Array& torques,
                  const std::optional<Mask>& valid) {
   const py::ssize_t count = time.size();

@@ -106,7 +106,7 @@ void bindLawEnums(py::module_& module) {
       .value("MEASURED", ModelState::kMeasured);
 }
 
-/// Of LawOptions.limits.
+/// A field of LawOptions.limits.
 auto limitField(const char* name, OwnedVector OutputLimits::*member, const char* doc) {
   return Field<LawOptions, Vector, Vector>(
       name, [member](const LawOptions& o) -> Vector { return o.limits.*member; },

@@ -20,7 +20,7 @@ namespace {
 namespace py = pybind11;
 namespace ids = inverse_dynamics_solver;
 
-/// What the libraries say to users of C++, and what Python has for it.
+/// Words of the C++ libraries, and their equivalents in Python.
 constexpr std::pair<const char*, const char*> kWords[] = {
     {"pass a URDF to initialize() as third argument, or set the parameter 'robot_description' "
      "(without namespace) or 'model'",

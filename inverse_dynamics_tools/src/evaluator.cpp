@@ -81,7 +81,7 @@ void bindErrors(py::module_& module) {
              "computed, measured: (N, n).");
 }
 
-/// What was done, without what was found in the samples: a few numbers that outlive them.
+/// How accelerations were estimated, without findings about the samples: outlives the table.
 struct Accelerations {
   std::string method;
   std::optional<double> cutoff;
@@ -170,7 +170,7 @@ void bindEvaluated(py::module_& module) {
 
 // ---------------------------------------------------------------- evaluating
 
-/// What JointLog of joint_log.py holds of the samples.
+/// Samples of a JointLog of joint_log.py.
 struct Log {
   explicit Log(const py::handle& log)
       : header_stamps(log.attr("header_stamps").cast<Integers>()),

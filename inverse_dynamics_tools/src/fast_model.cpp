@@ -76,7 +76,7 @@ class FastModel {
 
 using Numbers3 = std::array<double, 3>;
 
-/// Of rows (n, 10).
+/// Links from rows (n, 10).
 std::vector<chain_dynamics::LinkParameters> linksOf(const Array& rows, py::ssize_t n) {
   std::vector<chain_dynamics::LinkParameters> links;
   for (py::ssize_t i = 0; i < n; ++i) {
@@ -103,7 +103,7 @@ std::unique_ptr<FastModel> fromFile(const std::string& path, std::int64_t thread
   return std::make_unique<FastModel>(chain_dynamics::modelFromFile(path), threads);
 }
 
-/// The chain with what an IdentifiedModel of identification/result.py has.
+/// The chain with the parameters of an IdentifiedModel of identification/result.py.
 std::unique_ptr<FastModel> identified(const FastModel& engine, const IdentifiedModel& found) {
   const chain_dynamics::Chain& chain = engine.model().chain;
   const auto n = static_cast<py::ssize_t>(chain.jointCount());
@@ -147,7 +147,7 @@ std::string fileText(const FastModel& of, const std::string& name, const std::st
   return chain_dynamics::modelFileText(model);
 }
 
-/// Rows (n, 3, 3), (n, 3) and (n, 10) of the joints.
+/// A chain from rows (n, 3, 3), (n, 3) and (n, 10), one per joint.
 std::unique_ptr<FastModel> fromJoints(const std::vector<std::string>& names,
                                       const std::vector<bool>& prismatic, const Array& rotations,
                                       const Array& offsets, const Array& links,

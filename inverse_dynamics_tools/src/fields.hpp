@@ -26,7 +26,7 @@
 
 namespace inverse_dynamics_tools {
 
-/// What Python gives for a value of C++, and what it gets.
+/// The types that Python passes and receives for a value of C++.
 template <class Value>
 struct InPython {
   using Given = Value;
@@ -93,8 +93,8 @@ auto inherited(const char* name, Value Base::*member, const char* doc = "") {
                                                                                   doc);
 }
 
-/// A constructor of all fields, the first Required of them without a default. Of more than five
-/// only these can be given without their name. `doc`: its own.
+/// A constructor of all fields; the first `Required` have no default. With more than five fields,
+/// the others are keyword-only. `doc`: docstring of the constructor.
 template <std::size_t Required, class T, class... Fields, std::size_t... I>
 void defineConstructor(pybind11::class_<T>& of, const char* doc, std::index_sequence<I...> /*all*/,
                        const Fields&... fields) {
@@ -177,7 +177,7 @@ pybind11::class_<T> bindRecord(pybind11::module_& module, const char* name, cons
       .def(py::pickle(dict_of, [](const py::dict& values) {
         return py::type::of<T>()(**values).template cast<T>();
       }));
-  // Made when asked for, as dataclasses takes 9 ms to import.
+  // Made on demand: importing dataclasses takes 9 ms.
   const py::tuple names = py::make_tuple(fields.name...);
   record.def_property_readonly_static("__dataclass_fields__", [=](const py::object&) {
     const auto dataclasses = py::module_::import("dataclasses");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Jacobians of the links and joints of a robot description, not of the chain's tip alone.
+/// Jacobians of any link or joint of a robot description, not only of the chain's tip.
 ///
 ///     const Frames frames(urdf, {"base_link", {"shoulder", "elbow"}, {{"finger", 0.02}}});
 ///     frames.to("forearm").jacobians(q, J);
@@ -22,7 +22,7 @@ namespace inverse_dynamics_tools {
 struct FramesOf {
   std::string root;                      ///< empty: that of the description
   std::vector<std::string> joints;       ///< from root to tip
-  std::map<std::string, double> locked;  ///< positions of joints beside the chain; others: 0
+  std::map<std::string, double> locked;  ///< positions of joints off the chain; others: 0
 };
 
 /// Threads: safe.

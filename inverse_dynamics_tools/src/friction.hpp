@@ -10,7 +10,7 @@
 
 namespace pybind11::detail {
 
-/// Optional coefficients may be absent. Of a law, load and Stribeck terms that are zero are.
+/// Optional coefficients may be absent. A law's load and Stribeck terms are left out if they are zero.
 template <>
 class type_caster<chain_dynamics::SmoothCoulomb> {
  public:

@@ -97,7 +97,7 @@ std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::st
                                      identification::LinkFloor{}, motors);
 }
 
-/// What the tip carries in each block: arguments of set_payload(), or none.
+/// The known body at the tip in each block, as arguments of set_payload(), or none.
 using Carried = std::vector<std::optional<inverse_dynamics_solver::RigidBody>>;
 
 std::vector<ArmSamples> samplesOf(const std::vector<Block>& blocks, const Carried& carried) {

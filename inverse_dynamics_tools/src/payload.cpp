@@ -30,7 +30,7 @@ class SharedEstimator {
   Eigen::Index jointCount() const { return estimator_.jointCount(); }
   Eigen::Index armDeviations() const { return arm_deviations_; }
 
-  /// What `call(estimator)` returns, without the GIL.
+  /// Returns `call(estimator)`, called without the GIL.
   template <class Call>
   auto during(Call call) {
     const pybind11::gil_scoped_release release;
@@ -126,7 +126,7 @@ std::unique_ptr<ArmUncertainty> makeUncertainty(const std::vector<StepFriction>&
       ArmUncertainty{friction, states(factor, "factor").transpose()});
 }
 
-/// What is made of the deviations (K, n) at each of N states: (N, n).
+/// Reduces the deviations (K, n) at each of N states: (N, n).
 template <typename Reduce>
 Array ofDeviations(const ArmUncertainty& arm, const SolverObject& solver, const Motion& motion,
                    const Reduce& reduce) {

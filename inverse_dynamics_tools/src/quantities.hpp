@@ -45,7 +45,7 @@ inline constexpr ShapeOf kJointByJoint = [](pybind11::ssize_t n) { return Shape{
 inline constexpr ShapeOf kJacobian = [](pybind11::ssize_t n) { return Shape{6, n}; };
 inline constexpr ShapeOf kTenPerJoint = [](pybind11::ssize_t n) { return Shape{n, 10 * n}; };
 
-/// What a docstring says of a result.
+/// Parts of a result's docstring.
 struct ResultText {
   const char* formula;
   const char* shape;
@@ -151,7 +151,7 @@ class Quantities {
   pybind11::class_<Class>& class_;
 };
 
-// What both Solver and FastModel have.
+// Quantities of both Solver and FastModel.
 
 inline constexpr Quantity kTorques{"torques",
                                    std::array{"q", "qd", "qdd"},

@@ -29,7 +29,7 @@ struct Messages {
   std::unique_ptr<recordings::MessageSource> source;
 };
 
-/// Joint states of a recording, and one of them that was read too early for a block.
+/// Joint states of a recording, and the one that was read ahead of the next block.
 struct JointStates {
   std::unique_ptr<recordings::JointStateSource> source;
   recordings::JointSample sample = {};
@@ -159,8 +159,8 @@ std::shared_ptr<SampleTable> readSamples(const Recording& recording, const PathT
   return table;
 }
 
-/// Columns of the samples by the names that files of results have for them: (N, n), or (N,) of a
-/// vector; memory of the table, which arrays keep alive.
+/// Columns of the samples, named as in files of results: (N, n), or (N,) for a vector. The arrays are
+/// views that keep the table alive.
 py::dict seriesOf(const py::object& self) {
   const auto& table = *self.cast<const SampleTable*>();
   py::dict series;
@@ -187,10 +187,10 @@ py::dict seriesOf(const py::object& self) {
   return series;
 }
 
-/// Of a topic: header and receive stamps, position, velocity, effort.
+/// Messages of a topic: header and receive stamps, position, velocity, effort.
 using Rows = std::tuple<Integers, Integers, Array, Array, Array>;
 
-/// Messages of a topic of n joints, looked at where they lie.
+/// Views of a topic's messages of n joints.
 JointStateRows rowsOf(const Rows& given, std::size_t n) {
   const auto& [header, receive, position, velocity, effort] = given;
   const py::ssize_t count = header.size();

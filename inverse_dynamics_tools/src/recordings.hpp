@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What readers of recordings share.
+/// Helpers for reading recordings.
 #pragma once
 
 #include <pybind11/pybind11.h>

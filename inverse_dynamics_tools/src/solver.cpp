@@ -38,7 +38,7 @@ namespace ids = inverse_dynamics_solver;
 using Robot = inverse_dynamics_evaluation::RunConfiguration;
 using SolverName = std::variant<Robot, PathText>;
 
-/// What a solver was made from: enough to make it again elsewhere (pickle).
+/// The arguments that made a solver: enough to make it again elsewhere (pickle).
 struct Origin {
   std::string plugin, urdf;
   ParameterValues parameters;
@@ -52,7 +52,7 @@ std::string solversThat(const Has& has) {
   for (const std::string& name : loader.availableSolvers()) {
     try {
       if (has(*loader.load(name))) names += (names.empty() ? "" : ", ") + name;
-    } catch (const ids::Exception&) {  // one that can't be loaded is no advice
+    } catch (const ids::Exception&) {  // don't recommend a solver that can't be loaded
     }
   }
   return names;
@@ -65,7 +65,7 @@ void warn(const std::string& text) {
   }
 }
 
-/// The chain between whose joints and links Jacobians are asked for.
+/// The chain whose links and joints may be given as frames of Jacobians.
 FramesOf framesOf(const ParameterValues& parameters, std::vector<std::string> joints) {
   const std::string locked = "locked_joints.";
   FramesOf of{"", std::move(joints), {}};
@@ -94,13 +94,13 @@ class Solver {
   const std::vector<std::string>& joints() const { return solver_->jointNames(); }
   const Frames& frames() const { return *frames_; }
 
-  /// What only some solvers can; null: this one can't.
+  /// A capability; null if this solver lacks it.
   template <class Capability>
   Capability* find() const {
     return dynamic_cast<Capability*>(solver_.get());
   }
 
-  /// @throws Exception  this one can't: names those that can. `method` begins the text.
+  /// @throws Exception  this solver lacks it; names those that have it. `method` begins the text.
   template <class Capability>
   Capability& as(const std::string& method) const {
     if (auto* const found = find<Capability>()) return *found;
@@ -140,7 +140,7 @@ void withWrenches(const ids::ConstStates& wrenches, const std::string& frame,
   }
 }
 
-/// Who computes with the wrench, which becomes the last argument of the call.
+/// Adds the wrench as the last argument of the call; returns the capability that computes with it.
 const ids::ExternalWrench& contactOf(const Solver& solver, SolverCall& call,
                                      const py::object& wrench, const std::string& frame) {
   const auto& contact = solver.as<ids::ExternalWrench>(call.method());
@@ -248,7 +248,7 @@ inline constexpr Quantity kPotentialEnergy{
     {"Of gravity [J], where H is symmetric; zero where all masses are at the root's origin.",
      "() or (N,)", "arm.potential_energy(q).shape\n(100,)"}};
 
-/// What is one expression of states.
+/// Quantities that depend on states only.
 void bindQuantities(py::class_<Solver>& solver) {
   using S = const Solver&;
   using Part = const PartOfCall&;
@@ -298,7 +298,7 @@ void bindQuantities(py::class_<Solver>& solver) {
       });
 }
 
-/// What takes more than states.
+/// Methods with further arguments.
 void bindCalls(py::class_<Solver>& solver) {
   const py::kw_only keywords;
   const py::arg_v frame = py::arg("frame") = "root", out = py::arg("out") = py::none();
@@ -414,7 +414,7 @@ void bindProperties(py::class_<Solver>& solver) {
 
 // ---------------------------------------------------------------- bodies and gravity
 
-// What is set waits for a change, which waits for batches: without the interpreter's lock.
+// A change waits for batches, so setters release the interpreter's lock.
 ids::Payloads payloads(const Solver& solver) {
   auto& payload = solver.as<ids::Payload>("payloads");
   return unlocked([&] { return payload.payloads(); });
@@ -515,8 +515,8 @@ Examples
 constexpr const char* kUsualPlugin =
     "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody";
 
-/// What names a robot or a solver: a Robot, a name of robot_names(), the file of a run configuration,
-/// `package/Class`, or the package without its ending; nothing beside a description: the usual plugin.
+/// The robot of a Robot, a name of robot_names(), the file of a run configuration, `package/Class`, or
+/// a package without its ending. Nothing, with a description: the usual plugin.
 Robot robotOf(const SolverName& named, bool described) {
   if (const auto* const robot = std::get_if<Robot>(&named)) return *robot;
   const std::string& text = std::get<PathText>(named).bytes;
@@ -566,14 +566,14 @@ std::unique_ptr<Solver> makeSolver(const SolverName& named, const Description& u
   if (!attached.empty()) give("attached", attached);
   if (model) give("model", *model);
   if (gravity) give("gravity", std::vector<double>(gravity->begin(), gravity->end()));
-  // what the robot states, and nobody replaces
+  // what the robot states and no argument replaces
   auto own = inverse_dynamics_evaluation::solverParameters(robot);
   if (!urdf.text.empty()) own.erase("model");
   origin.parameters.insert(own.begin(), own.end());
   return std::make_unique<Solver>(std::move(origin));
 }
 
-/// What pickle and copy keep: what the solver was made of, and what was set since.
+/// State for pickle and copy: what made the solver, and what was set since.
 py::tuple stateOf(const Solver& solver) {
   py::dict since;
   if (solver.find<ids::Payload>() && solver.find<ids::VariableGravity>()) {

@@ -31,12 +31,12 @@ double* memoryOf(const py::array& array) {
   return static_cast<double*>(const_cast<void*>(array.data()));
 }
 
-/// From a number to the next along an axis; zero for an axis that isn't there.
+/// Distance between neighbours along an axis, in doubles; zero for an absent axis.
 std::ptrdiff_t stepOf(const py::array& array, py::ssize_t axis) {
   return axis < 0 ? 0 : array.strides(axis) / static_cast<py::ssize_t>(sizeof(double));
 }
 
-/// Bytes from the first to behind the last that an array holds.
+/// First byte of an array, and the byte after its last.
 std::pair<const char*, const char*> extent(const py::array& array) {
   const auto* first = static_cast<const char*>(array.data());
   if (array.size() == 0) return {first, first};
@@ -48,7 +48,7 @@ std::pair<const char*, const char*> extent(const py::array& array) {
   return {first, last + array.itemsize()};
 }
 
-/// Whether a number stands in both: one may lie in the gaps of the other.
+/// Whether they share a number: one may lie in the gaps of the other.
 bool overlap(const py::array& a, const py::array& b) {
   const auto [a_first, a_last] = extent(a);
   const auto [b_first, b_last] = extent(b);
@@ -56,8 +56,8 @@ bool overlap(const py::array& a, const py::array& b) {
   return py::module_::import("numpy").attr("shares_memory")(a, b).cast<bool>();
 }
 
-/// Whether two numbers of an array may stand at one place: unless each axis steps over all that the axes
-/// with smaller steps reach. Of axes that interleave without that, yes.
+/// Whether two entries of an array may share memory: unless each axis steps over everything that the axes
+/// with smaller steps reach. Also true for axes that interleave without sharing memory.
 bool mayOverlapItself(const py::array& array) {
   std::vector<std::pair<py::ssize_t, py::ssize_t>> axes;  // bytes of a step, number of steps
   for (py::ssize_t i = 0; i < array.ndim(); ++i) {

@@ -22,7 +22,7 @@
 
 namespace inverse_dynamics_tools {
 
-/// Of an array, or of what a result has for each state: {} a number, {n}, {6, n}.
+/// Shape of an array, or of a result's part for each state: {} a number, {n}, {6, n}.
 using Shape = std::vector<pybind11::ssize_t>;
 
 class SolverCall {

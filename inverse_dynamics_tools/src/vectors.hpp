@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Eigen's vectors as arguments and results: instead of pybind11/eigen.h alone, which takes texts for
+/// Eigen's vectors as arguments and results: pybind11/eigen.h by itself accepts texts as
 /// numbers.
 #pragma once
 
