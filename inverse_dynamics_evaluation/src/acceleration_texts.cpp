@@ -28,7 +28,7 @@ std::string gapFinding(const SampleReport& samples, bool filtered) {
          (filtered ? "; each side is filtered by itself" : "");
 }
 
-// What the data couldn't tell about the cut-off.
+// Limits of the choice of the cut-off.
 void addFilterFindings(const FilterChoice& filter, std::vector<std::string>& found) {
   if (!filter.chosen) {
     return;

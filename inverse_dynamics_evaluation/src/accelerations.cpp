@@ -81,7 +81,7 @@ void mirrorEnds(Columns samples, Index count) {
   }
 }
 
-// What a filter of this order needs, of which each end is continued.
+// Samples that a filter of this order needs, as each end is continued.
 constexpr Index leastSamples(int order) { return 3 * (order + 1) + 1; }
 
 void requireFilter(double sampling_frequency, double cutoff, int order) {
@@ -344,7 +344,7 @@ Index longestOf(const std::vector<Grid>& grids) {
       ->count;
 }
 
-// Of the equidistant samples of all pieces [Hz].
+// Mean frequency of the equidistant samples of all pieces [Hz].
 double samplingFrequency(const std::vector<Grid>& grids) {
   double intervals = 0.0;
   double duration = 0.0;
@@ -521,7 +521,7 @@ AccelerationReport findAccelerations(SampleTable& table, AccelerationMethod meth
   AccelerationReport result;
   result.method = methodOf(method, options.cutoff, table.has_accelerations);
   const bool filtered = result.method == AccelerationMethod::kLowPass;
-  // what the filter needs, every piece must have; without a filter none is too short
+  // every piece must be long enough for the filter; without a filter none is too short
   options.rules.shortest_piece =
       filtered ? std::max(options.rules.shortest_piece, leastSamples(options.order)) : 1;
   result.samples = examineSamples(table, options.rules);

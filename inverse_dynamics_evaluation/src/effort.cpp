@@ -17,7 +17,7 @@ namespace {
 
 using inverse_dynamics_solver::InverseDynamicsSolver;
 
-// Who stated a meaning.
+// Sources of a meaning, in words.
 constexpr const char* kOption = "as given";
 constexpr const char* kFormat = "as the recording's format says";
 constexpr const char* kFromData = "found from the data";

@@ -19,17 +19,16 @@ namespace {
 using Eigen::Index;
 using inverse_dynamics_solver::InverseDynamicsSolver;
 
-// Samples that a solver gets at once: whole groups of those that it computes in parallel, and few
-// enough to stay in the cache.
+// Samples per call of a solver: a multiple of its lanes, and few enough to stay in the cache.
 constexpr Index kSamplesAtOnce = 4096;
 
-// Shares of the work that are done after each part of it, about as long as they take.
+// Share of the work that is done after each step, by typical running times.
 constexpr double kRead = 0.4;
 constexpr double kAccelerated = 0.6;
 constexpr double kComputed = 0.85;
 constexpr double kMeasured = 0.9;
 
-// Errors say which recording they are of.
+// Names the recording in errors.
 template <class Call>
 auto named(const EvaluationOptions& options, Call call) {
   try {
@@ -72,8 +71,7 @@ void computeTorques(SampleTable& table, const InverseDynamicsSolver& solver,
   });
 }
 
-// What efforts mean, as stated or as the data tell; computed torques then are without gravity where
-// efforts are.
+// Settles the meaning of efforts, and subtracts gravity from computed torques if the efforts lack it.
 void settleEffort(Evaluation& result, const InverseDynamicsSolver& solver,
                   const EvaluationOptions& options) {
   SampleTable& table = *result.table;
@@ -100,7 +98,7 @@ void compare(Evaluation& result, const EvaluationOptions& options) {
   result.errors_of_kept = metrics(table.computed, table.measured, Mask(table.kept));
 }
 
-// Evaluates a table that has what was recorded, and efforts whose stated meaning is known.
+// Evaluates a table of recorded columns; the stated meaning of efforts is known.
 void evaluateTable(Evaluation& result, const InverseDynamicsSolver& solver,
                    const EvaluationOptions& options) {
   SampleTable& table = *result.table;

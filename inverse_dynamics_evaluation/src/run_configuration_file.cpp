@@ -25,7 +25,7 @@ using chain_dynamics::LocatedValue;
 constexpr std::int64_t kSchema = 1;
 constexpr const char* kRobotsPackage = "inverse_dynamics_robots";
 
-/// Whether it can be the name of a file: results are called after a robot.
+/// Whether it can be a file name: results are named after the robot.
 bool isPlainName(const std::string& text) {
   return !text.empty() && text != "." && text != ".." && text.find('/') == std::string::npos &&
          chain_dynamics::isPrintable(text);
@@ -38,7 +38,7 @@ std::string stripped(const std::string& text) {
                                     : text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
 }
 
-// No path has a NUL; a system call would take what is before it.
+// A path can't contain NUL; a system call would ignore everything after it.
 bool isFile(const std::string& path) {
   std::error_code ignored;
   return path.find('\0') == std::string::npos && fs::is_regular_file(path, ignored);
@@ -128,7 +128,7 @@ void readAccelerations(const std::optional<LocatedValue>& value, RunConfiguratio
   map.rejectOthers();
 }
 
-// How a recorded table is read; the reader checks what the values mean.
+// Format of a recorded table; its reader checks the values.
 void readTable(const std::optional<LocatedValue>& value, RunConfiguration& robot) {
   if (!value) {
     return;
@@ -196,7 +196,7 @@ RunConfiguration readFile(const std::string& file) {
   readTable(top.optional("table"), robot);
   robot.source = stripped(textOf(top.optional("source")));
   if (const auto simulation = top.optional("simulation")) {
-    simulation->map();  // what it holds, the simulator reads
+    simulation->map();  // the simulator reads its contents
   }
   top.rejectOthers();
   return robot;

@@ -54,8 +54,8 @@ OwnedMatrix backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
 /// @param frequency,cutoff,sampling_frequency  Hz; 0 < cutoff < sampling_frequency / 2.
 double lowPassGain(double frequency, double cutoff, double sampling_frequency, int order = 2);
 
-/// Samples by which lowPass() continues each end if it isn't told: one and a half periods of the
-/// cut-off, at least 3 (order + 1) samples, at most what there is.
+/// Default number of samples by which lowPass() continues each end: one and a half periods of the
+/// cut-off, at least 3 (order + 1) samples, at most N - 1.
 Eigen::Index defaultPadding(Eigen::Index samples, double sampling_frequency, double cutoff,
                             int order = 2);
 
@@ -82,12 +82,12 @@ struct LowPassOptions {
   SampleRules rules;  ///< faults of the samples to act on
 };
 
-/// Facts about a filter, to be printed and stored beside its result.
+/// Properties of a filter, printed and stored with its result.
 struct FilterChoice {
   std::string method;                      ///< in words
   double cutoff = 0;                       ///< Hz; gain one half there
   bool chosen = false;                     ///< whether the cut-off was chosen from the data
-  CutoffChoice choice;                     ///< how; all zero if it wasn't
+  CutoffChoice choice;                     ///< bounds of the choice; all zero if not chosen
   int order = 0;                           ///< of the Butterworth filter; forwards and backwards
   double sampling_frequency = 0;           ///< Hz; of the equidistant samples that were filtered
   TimeBase time_base = TimeBase::kStamps;  ///< when samples were taken

@@ -22,33 +22,33 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
-/// What recorded efforts can mean.
+/// Possible meanings of recorded efforts.
 inline constexpr const char* kTorque = "torque";
 inline constexpr const char* kCurrent = "current";
 inline constexpr const char* kTorqueWithoutGravity = "torque_without_gravity";
 
-/// Statement that the data are to tell what efforts mean.
+/// Stated meaning that leaves the choice to the data.
 inline constexpr const char* kAutomatic = "auto";
 
-/// What is stated of efforts: a meaning, or `auto`. And how texts name who states it.
+/// Stated meanings of efforts, or `auto`, and how texts name their sources.
 struct EffortOptions {
   std::optional<std::string> option;    ///< by the user; none: nothing
   std::string format;                   ///< by the recording's format; empty: nothing
   std::string configuration = kTorque;  ///< by the run configuration
   std::vector<double> drive_gains;      ///< n; N m/A (prismatic N/A); driveGains(); or none
-  std::string where;                    ///< who states it: `robot NAME`, a parameter
+  std::string where;                    ///< source of the statement: `robot NAME`, a parameter
   std::string gains_from;               ///< where drive gains can be given: a file, a parameter
   std::string plugin;                   ///< of the solver
-  /// What states `configuration` and `drive_gains`, in words; empty: nothing, only a description.
+  /// Source of `configuration` and `drive_gains`, in words; empty: there is only a description.
   std::string configured_by = "the run configuration";
 };
 
-/// What the data say efforts mean.
+/// The meaning of efforts that fits the data.
 struct EffortVerdict {
   std::string best = kTorque;  ///< the meaning that fits best
   bool sure = false;           ///< whether no other meaning or mistake fits as well
   std::string summary;         ///< errors of the meanings, in words; may be empty
-  std::string reason = "evaluate() in C++ doesn't ask them, `ids evaluate` does";  ///< of doubt
+  std::string reason = "evaluate() in C++ doesn't ask them, `ids evaluate` does";  ///< why not sure
 };
 
 /// What recorded efforts mean, and how that is known.
@@ -75,17 +75,17 @@ std::vector<double> driveGainsOf(const inverse_dynamics_solver::InverseDynamicsS
 std::vector<double> driveGains(const std::vector<double>& configured, const std::string& where,
                                const inverse_dynamics_solver::InverseDynamicsSolver& solver);
 
-/// What is stated; meaning `auto` where the data are to tell.
+/// The stated meaning; `auto` leaves the choice to the data.
 ///
 /// @throws EvaluationError: another word. @throws ConfigurationError: currents without drive gains.
 Effort statedEffort(const EffortOptions& options);
 
-/// What the data tell if they are sure, else what is stated without them.
+/// The verdict of the data if it is sure, else the stated meaning.
 ///
 /// @throws ConfigurationError: currents without drive gains.
 Effort effortOfData(EffortVerdict verdict, const EffortOptions& options);
 
-/// What a reader of the results should know of it, a sentence each.
+/// Notes for readers of the results, one sentence each.
 ///
 /// @param all_zero    whether all recorded efforts are.
 /// @param own_gains   driveGainsOf() the solver.

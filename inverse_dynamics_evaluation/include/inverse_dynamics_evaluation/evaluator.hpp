@@ -6,7 +6,7 @@
 ///     Evaluation evaluation = evaluate(log, *solver, options);
 ///     std::cout << evaluation.errors[0].rmse << " N m\n" << evaluation.table->computed.col(0);
 ///
-/// A recording of any length is read from its file once, into a table that needn't fit into memory:
+/// A recording of any length is read once, into a table that may exceed the memory:
 ///
 ///     const auto source = Recording("motion").jointStates();   // inverse_dynamics_evaluation
 ///     RecordingOptions recording;
@@ -16,10 +16,10 @@
 ///
 /// The steps, in the order in which they are taken; docs/evaluation.md has the formulas:
 ///
-/// 1. What efforts mean, as it is stated (effort.hpp).
+/// 1. The stated meaning of efforts (effort.hpp).
 /// 2. Faults of the samples (samples.hpp), and accelerations (accelerations.hpp).
 /// 3. Torques by the solver.
-/// 4. What efforts mean, by the caller's comparison with the data where it is stated as `auto`.
+/// 4. The meaning of efforts by the caller's comparison with the data, where `auto` is stated.
 /// 5. Errors of the computed against the measured torques (metrics.hpp): over all samples, and over
 ///    those that were kept. Findings and notes say the same in words.
 
@@ -58,17 +58,17 @@ struct EvaluationOptions {
   std::vector<std::string> notes;  ///< what was left out or assumed in reading: SampleTable::notes
   TellProgress progress;
   AskData ask;  ///< called where efforts are `auto`; without it, the stated meaning counts
-  /// Whose gravity efforts without gravity lack: what the robot computes it with; null: the solver's.
+  /// The model whose gravity the robot subtracts from its efforts; null: the solver's.
   const inverse_dynamics_solver::InverseDynamicsSolver* subtracted = nullptr;
 };
 
 /// Result of an evaluation. Copies share the table.
 struct Evaluation {
   std::vector<std::string> joint_names;  ///< n; those of the solver
-  /// Samples, accelerations, what the rules say of each sample; computed torques, without gravity
-  /// where the efforts are, and measured ones: what efforts mean.
+  /// Samples, accelerations and flags of each sample; measured torques, and computed ones, without
+  /// gravity if the efforts are.
   std::shared_ptr<SampleTable> table;
-  AccelerationReport accelerations;  ///< and what was found; the table has what is of each sample
+  AccelerationReport accelerations;  ///< their origin, and findings; the table flags each sample
   Effort effort;
   std::vector<JointMetrics> errors;          ///< n; over all samples; empty without efforts
   std::vector<JointMetrics> errors_of_kept;  ///< n; over those that were kept
