@@ -12,7 +12,7 @@
 
 namespace inverse_dynamics_ros {
 
-/// What such a file says of the estimator, and of what it gave without contact.
+/// Options of the estimator, and statistics of its estimates without contact.
 struct ContactFile {
   double gain = 0.0;               ///< 1/s
   std::optional<double> tracking;  ///< rad/s

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Where things fall, in the axes of the root link, by an IMU that is fixed to it.
+/// Gravity in the axes of the root link, from an IMU that is fixed to it.
 
 #pragma once
 
@@ -20,7 +20,7 @@ class GravityFromImu {
     kOrientation,   ///< orientation, relative to a frame whose z axis points up
   };
 
-  /// What came of a message.
+  /// Outcome of a message.
   enum class Outcome {
     kTaken,
     kAbsent,     ///< its covariance begins with -1: the IMU doesn't measure it
@@ -29,7 +29,7 @@ class GravityFromImu {
 
   /// @param R_root_imu     axes of the IMU in those of the root link.
   /// @param time_constant  of the low-pass, s, > 0.
-  /// @param gravity        where it begins; its norm is that of kOrientation; m/s^2.
+  /// @param gravity        initial value; kOrientation keeps its norm; m/s^2.
   GravityFromImu(Source source, const Eigen::Matrix3d& R_root_imu, double time_constant,
                  const Eigen::Vector3d& gravity);
 

@@ -33,8 +33,8 @@ bool LiveContact::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eig
   return status_ == Status::kOk;
 }
 
-// Stamps jitter, samples are taken at equal distances: the mean of the latest ones, without those of
-// lost samples and pauses.
+// Stamps jitter although samples are equidistant, so the period is the mean of the latest distances,
+// without those of lost samples and pauses.
 double LiveContact::periodOf(std::int64_t distance) {
   if (distance > 0) {
     distances_[distance_count_++ % distances_.size()] = distance;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What touches the robot, of joint states as they come: the work of the live node, without topics.
+/// Contacts of the robot from live joint states: the computations of the live node, without topics.
 
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace inverse_dynamics_ros {
 
-/// What LiveContact works with.
+/// Options of LiveContact.
 struct LiveContactOptions : inverse_dynamics_control::ContactOptions {
   inverse_dynamics_solver::WrenchFrame wrench_frame = inverse_dynamics_solver::WrenchFrame::kTip;
 };

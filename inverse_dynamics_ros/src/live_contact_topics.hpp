@@ -25,20 +25,20 @@ namespace inverse_dynamics_ros {
 /// ~/external_torques, ~/external_wrench, ~/contact.
 class LiveContactTopics {
  public:
-  /// @param given  what the user has set: it replaces what the file of contacts says.
+  /// @param given  parameters that the user has set; they take precedence over the file of contacts.
   LiveContactTopics(rclcpp::Node& node, live_node::Params::ExternalTorques parameters,
                     inverse_dynamics_solver::Parameters given);
 
-  /// What estimates for a robot.
+  /// An estimator for a robot.
   ///
   /// @throws UserError: a file that can't be used, a link without a name.
   /// @throws inverse_dynamics_solver::Exception: parameters out of range.
   std::unique_ptr<LiveContact> make(const LiveRobot& robot) const;
 
-  /// Estimates for this robot from now on.
+  /// Uses this estimator from now on.
   void use(std::unique_ptr<LiveContact> contact, const LiveRobot& robot);
 
-  /// Takes a joint state and publishes what it tells.
+  /// Takes a joint state and publishes the estimates.
   void take(const std_msgs::msg::Header& header, std::int64_t stamp, const LiveTorques& live);
 
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);

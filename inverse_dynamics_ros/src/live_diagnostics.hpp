@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What the live node tells /diagnostics.
+/// Diagnostics of the live node.
 
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace inverse_dynamics_ros {
 
-/// What came so far.
+/// Numbers of messages by outcome.
 struct LiveCounts {
   std::int64_t received = 0;       ///< messages of the joints
   std::int64_t computed = 0;       ///< torques published
@@ -28,7 +28,7 @@ struct LiveCounts {
   std::int64_t gaps = 0;           ///< pauses that the filter can't bridge
 };
 
-/// From when on diagnostics complain.
+/// Thresholds of diagnostics.
 struct LiveLimits {
   double max_age = 1.0;   ///< s
   double min_rate = 0.0;  ///< Hz
@@ -47,10 +47,10 @@ class LiveDiagnostics {
 
   LiveCounts& counts() { return counts_; }
 
-  /// A message came; `latency` [s] from its stamp to now.
+  /// Notes a message; `latency` [s] from its stamp to now.
   void arrived(double latency);
 
-  /// What there is to say of the solver. @param ready  whether torques can be computed.
+  /// Sets the solver's report. @param ready  whether torques can be computed.
   void setSolver(bool ready, const std::string& text) {
     ready_ = ready;
     solver_text_ = text;

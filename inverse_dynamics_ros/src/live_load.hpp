@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What loads the robot of the live node and may change while it runs: a body at the tip, gravity.
+/// Loads of the live node's robot that may change while it runs: a body at the tip, gravity.
 
 #pragma once
 
@@ -23,8 +23,7 @@ namespace inverse_dynamics_ros {
 
 /// Parameters `payload.*`, topics ~/payload, ~/gravity, imu.
 ///
-/// Changes are made in steps of 10 ms. What can't be used is refused with a reason in the log, and
-/// changes nothing.
+/// Changes are applied in steps of 10 ms. Invalid messages are logged with a reason and ignored.
 class LiveLoad {
  public:
   using PayloadRamp = inverse_dynamics_control::PayloadRamp;
@@ -33,16 +32,16 @@ class LiveLoad {
   /// body.
   LiveLoad(rclcpp::Node& node, const live_node::Params& params);
 
-  /// Has a robot carry what is carried now.
+  /// Makes a robot carry the present body.
   ///
   /// @throws inverse_dynamics_solver::Exception: it can't, or its gravity can't change where an IMU
   ///         is to change it.
   std::shared_ptr<PayloadRamp> make(const LiveRobot& robot) const;
 
-  /// Loads this robot from now on.
+  /// Applies loads to this robot from now on.
   void use(std::shared_ptr<PayloadRamp> ramp, const LiveRobot& robot);
 
-  /// What is carried, or will be when the ramp has ended.
+  /// The body that is carried once the ramp has ended.
   inverse_dynamics_control::RigidBody body() const { return carried_.body(); }
 
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -56,7 +55,7 @@ class LiveLoad {
   rclcpp::Node& node_;
   live_node::Params::GravityFromImu params_;
   inverse_dynamics_control::CarriedBody<rclcpp::Node, geometry_msgs::msg::InertiaStamped> carried_;
-  std::optional<Eigen::Vector3d> gravity_;  // what was asked for last; none: the solver's own
+  std::optional<Eigen::Vector3d> gravity_;  // the latest one received; none: the solver's own
   std::optional<GravityFromImu> imu_;
   LiveRobot robot_;  // without a solver until there is one
   inverse_dynamics_solver::VariableGravity* variable_ = nullptr;  // null if gravity is fixed

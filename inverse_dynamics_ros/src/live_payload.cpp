@@ -8,7 +8,7 @@ namespace {
 using inverse_dynamics_evaluation::OnlineDerivative;
 using inverse_dynamics_identification::PayloadOptions;
 
-// How the noise is shared out: nearly all of it is friction that isn't quite that of the model.
+// White part of the noise. Errors of the friction model, which are correlated, dominate it.
 constexpr double kWhite = 0.3;
 
 PayloadOptions optionsOf(const LivePayloadOptions& options) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What the tip carries, estimated from joint states as they come: without topics.
+/// The body at the tip, estimated from live joint states, without topics.
 
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace inverse_dynamics_ros {
 
-/// What LivePayload works with.
+/// Options of LivePayload.
 struct LivePayloadOptions {
   double cutoff = 5.0;                         ///< Hz; see online_derivative.hpp
   double longest_gap = 0.5;                    ///< s

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Services of the live node that estimate what the tip carries.
+/// Services of the live node that estimate the body at the tip.
 
 #pragma once
 
@@ -25,14 +25,14 @@ class LivePayloadServices {
   using Trigger = std_srvs::srv::Trigger;
   using RigidBody = inverse_dynamics_solver::RigidBody;
 
-  /// @param carried  what the node has the solver carry.
+  /// @param carried  returns the body that the node lets the solver carry.
   LivePayloadServices(rclcpp::Node& node, const live_node::Params& params,
                       std::function<RigidBody()> carried);
 
-  /// Estimates for this robot from now on; an estimate that is under way is lost.
+  /// Uses this robot from now on; discards a running estimate.
   void use(const LiveRobot& robot);
 
-  /// Takes a joint state, while an estimate is under way.
+  /// Takes a joint state for a running estimate.
   void take(std::int64_t stamp, const LiveTorques& live);
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Torques of joint states as they come: the work of the live node, without topics.
+/// Torques of live joint states: the computations of the live node, without topics.
 
 #pragma once
 
@@ -32,10 +32,10 @@ struct LiveOptions {
 /// messages stay the same and the solver keeps its promise.
 class LiveTorques {
  public:
-  /// What came of a message.
+  /// Outcome of a message.
   enum class Outcome {
     kComputed,      ///< computed() is new; residual(), too, if hasResidual()
-    kSettling,      ///< the filter has begun not long ago: accelerations would be wrong
+    kSettling,      ///< the filter hasn't settled yet: accelerations would be wrong
     kOtherJoints,   ///< none of the joints: a gripper's, for one
     kMissing,       ///< some joints aren't there, or more than once: see culprits()
     kNoVelocities,  ///< positions or velocities are absent, or not one per name

@@ -15,7 +15,7 @@ namespace inverse_dynamics_ros {
 /// Writes into a hidden directory beside the target, which takes the target's name at the end.
 class OutputBag {
  public:
-  /// For a recording that somebody else writes to path().
+  /// For a recording that another writer puts at path().
   ///
   /// @throws UserError: the target exists, or can't be written.
   explicit OutputBag(const std::filesystem::path& target);

@@ -32,7 +32,7 @@ struct RecordedTrajectory {
   std::int64_t received = 0;  ///< ns
 };
 
-/// Samples that can be read, and what is needed to write messages like theirs.
+/// An opened motion: its samples, and its trajectories for writing similar messages.
 struct RecordedMotion {
   std::string topic;
   inverse_dynamics_evaluation::Storage storage = inverse_dynamics_evaluation::Storage::kSqlite3;

@@ -19,11 +19,11 @@
 
 namespace inverse_dynamics_ros {
 
-/// What belongs to one path beside its waypoints [inverse_dynamics_msgs/srv/Retime.srv].
+/// Options of one path [inverse_dynamics_msgs/srv/Retime.srv].
 struct PathOptions {
   std::vector<Eigen::Index> stops;  ///< waypoints, from 0
   std::optional<double> deviation;  ///< rad; none: the parameter's
-  double slower = 1.0;              ///< the motion takes so many times as long, >= 1
+  double slower = 1.0;              ///< factor of the motion's duration, >= 1
 };
 
 /// An arm, its limits, and how paths are made from waypoints.
@@ -44,7 +44,7 @@ class Retiming {
   /// @throws inverse_dynamics_solver::Exception  what retime() and Path say.
   JointTrajectory timed(const JointTrajectory& path, const PathOptions& options = {}) const;
 
-  /// Has the tip carry a body on the paths to come, in place of the one before; mass 0: none.
+  /// Sets the body that the tip carries on following paths; mass 0: none.
   ///
   /// @throws inverse_dynamics_solver::InvalidParameterValueException  a solver that can't.
   void carry(const inverse_dynamics_control::RigidBody& body);

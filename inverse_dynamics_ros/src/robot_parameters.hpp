@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// A robot, as the parameters of a node say it: a run configuration by the parameter `robot`, and
-/// what is given beside it.
+/// The robot of a node's parameters: a run configuration by the parameter `robot`, and parameters that
+/// take precedence over it.
 ///
-/// What is given replaces what the run configuration says, as the options of `ids evaluate` do.
+/// They replace its fields, as the options of `ids evaluate` do.
 
 #pragma once
 
@@ -20,7 +20,7 @@ namespace inverse_dynamics_ros {
 /// Namespace of a solver's parameters in a node.
 inline const std::string kSolverNamespace = "ids";
 
-/// What parameters say of a robot.
+/// The robot of a node's parameters.
 class NodeRobot {
  public:
   /// Parameters: robot, plugin_name, robot_description, joints, effort, drive_gains, accelerations,

@@ -39,7 +39,7 @@ JointTrajectory trajectory(const JointTrajectory& given, const SampleTable& tabl
   return result;
 }
 
-// As `ids` writes them.
+// By the writer of `ids`.
 void writeJointStates(const std::string& target, Storage storage, const std::string& topic,
                       const SampleTable& table) {
   OutputBag bag(target);

@@ -20,7 +20,7 @@ class UserError : public std::runtime_error {
       : std::runtime_error(where + ": expected " + expected + ", got " + got + "; " + remedy) {}
 };
 
-/// What a program ends with; the same codes as the command line's.
+/// Exit codes of the programs; the same as the command line's.
 enum ExitCode {
   kExitFine = 0,
   kExitUnexpected = 1,
@@ -28,13 +28,13 @@ enum ExitCode {
   kExitInterrupted = 130,
 };
 
-/// Exit code and text for whatever a node's set-up or work threw.
+/// Exit code and text of an exception.
 struct Failure {
   ExitCode code;
   std::string text;
 };
 
-/// Tells users' mistakes (of parameters, recordings, solvers) from everything else.
+/// Distinguishes users' mistakes (parameters, recordings, solvers) from other exceptions.
 Failure failureOf(const std::exception& error);
 
 }  // namespace inverse_dynamics_ros
