@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import re
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
@@ -13,6 +12,7 @@ import pytest
 import yaml
 from conftest import JOINTS, URDF, motion
 from identified_arms import arm, identification, predicted_torques, simulated_torques
+from test_report import data_of
 
 from inverse_dynamics import FastModel, Solver, evaluate, write_joint_logs
 from inverse_dynamics.base.plain import plain
@@ -226,12 +226,11 @@ def test_the_page_shows_each_column_and_the_band(found, files):
     assert "Held-out error" in html
     for text in ("URDF", "identified", "in 95 % band", "masses of single links", "forearm_link"):
         assert text in html
-    data = json.loads(re.search(r'id="runs">(.*?)</script>', html, re.DOTALL)[1])
-    (run,) = data
-    (joint, *_) = run["joints"]
-    assert [other["name"] for other in joint["others"]] == ["URDF"]
-    assert len(joint["band"]) == 400
-    assert joint["band"][0]["half"] == pytest.approx(0.196)
+    (run,) = data_of(html)
+    torques = run["plots"][0]
+    assert [series["name"] for series in torques["series"]] == ["measured", "URDF", "identified"]
+    assert len(torques["band"]) == 400
+    assert torques["band"][0]["half"] == pytest.approx(0.196)
     assert run["links"]
 
 

@@ -89,6 +89,14 @@ def data_of(html):
     return json.loads(text[1])
 
 
+def plots_of(run, joint):
+    """Torques and errors of a joint: the plot, with its series by name."""
+    return [
+        {**plot, "series": {series["name"]: series for series in plot["series"]}}
+        for plot in run["plots"][2 * joint : 2 * joint + 2]
+    ]
+
+
 def floats(text):
     return np.frombuffer(base64.b64decode(text), dtype="<f4")
 
@@ -108,20 +116,20 @@ def test_page_needs_no_network(page):
 
 def test_series_come_through_in_single_precision(page, evaluation):
     run = data_of(page.read_text())[0]
-    assert [joint["name"] for joint in run["joints"]] == list(evaluation.joint_names)
-    np.testing.assert_array_equal(floats(run["time"]), evaluation.time.astype("f4"))
-    np.testing.assert_array_equal(floats(run["q"]).reshape(6, -1), evaluation.log.q.T.astype("f4"))
-    for j, joint in enumerate(run["joints"]):
-        error = evaluation.computed[:, j] - evaluation.measured[:, j]
-        series = {
-            "measured": evaluation.measured[:, j],
-            "computed": evaluation.computed[:, j],
-            "error": error,
-        }
-        for name, values in series.items():
-            assert "time" not in joint[name]
-            assert ("limit" in joint[name]) == (name == "error")
-            np.testing.assert_array_equal(floats(joint[name]["values"]), values.astype("f4"))
+    assert [plot["label"] for plot in run["plots"][::2]] == list(evaluation.joint_names)
+    (motion,) = run["motions"]
+    np.testing.assert_array_equal(floats(motion["time"]), evaluation.time.astype("f4"))
+    q = [floats(column) for column in motion["q"]]
+    np.testing.assert_array_equal(q, evaluation.log.q.T.astype("f4"))
+    for j in range(6):
+        torques, errors = plots_of(run, j)
+        series = {**torques["series"], **errors["series"]}
+        measured, computed = evaluation.measured[:, j], evaluation.computed[:, j]
+        expected = {"measured": measured, "computed": computed, "error": computed - measured}
+        for name, values in expected.items():
+            assert "time" not in series[name]
+            assert ("limit" in series[name]) == (name == "error")
+            np.testing.assert_array_equal(floats(series[name]["values"]), values.astype("f4"))
 
 
 def test_long_recordings_keep_their_peaks(evaluation, run):
@@ -135,14 +143,14 @@ def test_long_recordings_keep_their_peaks(evaluation, run):
         run, time=t, q=q, measured=measured, computed=computed, table=evaluation.errors[:1]
     )
     html = render_page("Long", [long])
-    joint = data_of(html)[0]["joints"][0]
-    values, times = floats(joint["computed"]["values"]), floats(joint["computed"]["time"])
+    torques, errors = (plot["series"] for plot in plots_of(data_of(html)[0], 0))
+    values, times = (floats(torques["computed"][key]) for key in ("values", "time"))
     assert len(values) == len(times) <= MAX_SAMPLES
     assert np.all(np.diff(times) > 0)
     assert (times[0], times[-1]) == (0.0, 60.0)
     assert values.max() == np.float32(computed.max())
     assert values.min() == np.float32(computed.min())
-    assert floats(joint["error"]["values"]).min() == pytest.approx(-70.0)
+    assert floats(errors["error"]["values"]).min() == pytest.approx(-70.0)
     assert f"at most {MAX_SAMPLES:,} of them" in html
 
 
@@ -155,7 +163,7 @@ def test_names_are_text_and_never_markup(evaluation, comparison):
     html = render_page(evil, [report_run(bad, evil), report_comparison(bad_comparison)], [evil])
     assert "<script>alert" not in html
     assert html.count("</script") == 2
-    assert data_of(html)[0]["joints"][0]["name"] == evil
+    assert data_of(html)[0]["plots"][0]["label"] == evil
 
 
 def test_what_efforts_mean_and_how_sure_that_is_stands_among_the_assumptions(evaluation, run):
@@ -185,21 +193,19 @@ def test_tables_and_trajectories_are_shown_as_recordings_are(tmp_path):
         assert stated["accelerations"] == "given by the recording"
         assert len(run.links) > 6
         page = render_page("A page", [run])
-        joint = data_of(page)[0]["joints"][1]
+        series = plots_of(data_of(page)[0], 1)[0]["series"]
         expected = pytest.approx(torques[:, 1], rel=1e-6)
-        assert floats(joint["measured"]["values"]) == expected
-        assert floats(joint["computed"]["values"]) == expected
+        assert floats(series["measured"]["values"]) == expected
+        assert floats(series["computed"]["values"]) == expected
 
 
 def test_a_comparison_is_one_run_with_the_others_to_choose_and_a_table(page, comparison):
     html = page.read_text()
-    run = data_of(html)[2]
-    assert (run["name"], run["others_shown"]) == ("as it is", True)
-    other = run["joints"][1]["others"][0]
-    assert other["name"] == "one N m off"
-    np.testing.assert_allclose(
-        floats(other["error"]["values"]), floats(run["joints"][1]["error"]["values"]) + 1, atol=1e-4
-    )
+    torques, errors = (plot["series"] for plot in plots_of(data_of(html)[2], 1))
+    assert list(torques) == ["measured", "one N m off", "as it is"]
+    assert torques["one N m off"]["hidden"] is False
+    own, other = (floats(errors[name]["values"]) for name in ("error", "one N m off"))
+    np.testing.assert_allclose(other, own + 1, atol=1e-4)
     table = html[html.index("RMSE of as it is and one N m off") :].replace("<wbr>", "")
     row = re.findall(r">([^<>]*)</t[dh]>", table[table.index(">elbow_joint<") :])[:4]
     assert [float(c) for c in row[1:3]] == pytest.approx(comparison.rmse[:, 2], rel=0.01)
@@ -213,7 +219,7 @@ def test_a_start_transient_does_not_flatten_the_plot_of_errors(run):
     wild = smooth + 90.0 * (t < t[0] + 0.5)[:, None]
     wild[700] = 200.0
     shown = replace(run, computed=wild, measured=0 * wild, left_out=[(t[0], t[0] + 0.5)])
-    error = data_of(render_page("A page", [shown]))[0]["joints"][2]["error"]
+    error = plots_of(data_of(render_page("A page", [shown]))[0], 2)[1]["series"]["error"]
     assert 0.5 <= error["limit"] < 0.8
     assert floats(error["values"]).max() == 200.0
 
@@ -230,15 +236,18 @@ def test_report_verb_writes_the_page(evaluation, tmp_path, capsys, monkeypatch):
 
 def test_bands_and_other_models_are_in_the_data(page, evaluation):
     first, second, _ = data_of(page.read_text())
-    assert first["joints"][0]["others"] == []
-    assert first["joints"][0]["band"] == []
-    joint = second["joints"][1]
-    assert [part["half"] for part in joint["band"]] == [2.0, 4.0]
-    assert joint["band"][0]["to"] == pytest.approx(evaluation.time[700] - evaluation.time[0])
-    (other,) = joint["others"]
-    np.testing.assert_allclose(
-        floats(other["error"]["values"]), floats(joint["error"]["values"]) + 5.0, atol=1e-4
+    torques, errors = plots_of(first, 0)
+    assert (list(torques["series"]), list(errors["series"])) == (
+        ["measured", "computed"],
+        ["error"],
     )
+    assert torques["band"] == errors["band"] == []
+    torques, errors = plots_of(second, 1)
+    assert [part["half"] for part in torques["band"]] == [2.0, 4.0]
+    assert torques["band"][0]["to"] == pytest.approx(evaluation.time[700] - evaluation.time[0])
+    assert torques["series"]["other model"]["hidden"] is True
+    own, other = (floats(errors["series"][name]["values"]) for name in ("error", "other model"))
+    np.testing.assert_allclose(other, own + 5.0, atol=1e-4)
 
 
 def test_a_summary_comes_before_the_runs(run):

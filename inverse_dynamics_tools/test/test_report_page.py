@@ -395,7 +395,7 @@ def test_the_robot_fills_its_panel(show):
     found = show("evaluation").execute_script(
         """
         const run = JSON.parse(document.getElementById("runs").textContent)[0];
-        const time = decode(run.time), q = rows(run.q, run.joints.length);
+        const time = decode(run.motions[0].time), q = run.motions[0].q.map(decode);
         const motion = Array.from({length: 30}, (_, k) => positionsAt(time, q, 8 * k / 29));
         const points = pointsOf(run.links, motion);
         const [azimuth, elevation, aspect] = [-0.9, 0.38, 1.1];

@@ -139,13 +139,14 @@ def encoded_mesh(vertices: Matrix, triangles: NDArray[np.int64]) -> dict[str, An
     return {
         "middle": [float(value) for value in middle],
         "step": step,
-        "vertices": _base64(np.rint((vertices - middle) / step).astype("<i2")),
-        "triangles": _base64(triangles.astype("<u2")),
+        "vertices": base64_of(np.rint((vertices - middle) / step), "<i2"),
+        "triangles": base64_of(triangles, "<u2"),
     }
 
 
-def _base64(array: NDArray[Any]) -> str:
-    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")
+def base64_of(array: NDArray[Any], dtype: str) -> str:
+    """The numbers, of a type that scripts of pages read."""
+    return base64.b64encode(np.ascontiguousarray(array, dtype=dtype).tobytes()).decode("ascii")
 
 
 def _link(

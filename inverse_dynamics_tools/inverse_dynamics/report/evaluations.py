@@ -13,6 +13,7 @@ from inverse_dynamics.report.page import ReportRun, ReportTable, bands_of, joint
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation.comparison import Comparison
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.robot.robots import Robot
 
 
 def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
@@ -79,10 +80,7 @@ def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
         else "{:g}, {:g}, {:g} m/s²".format(*robot.gravity)
     )
     rows = [
-        ("solver", robot.plugin),
-        ("model file", robot.model.name if robot.model else ""),
-        ("description", robot.urdf.name if robot.urdf else ""),
-        ("friction", "as the solver models it" if robot.friction else "left out"),
+        *model_facts(robot),
         ("gravity", gravity),
         ("effort means", evaluation.effort.summary),
         ("accelerations", evaluation.accelerations.summary),
@@ -95,3 +93,13 @@ def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
         ("source", robot.source),
     ]
     return [(name, text) for name, text in rows if text]
+
+
+def model_facts(robot: Robot) -> list[tuple[str, str]]:
+    """What computes the torques of a robot; "" for what there isn't."""
+    return [
+        ("solver", robot.plugin),
+        ("model file", robot.model.name if robot.model else ""),
+        ("description", robot.urdf.name if robot.urdf else ""),
+        ("friction", "as the solver models it" if robot.friction else "left out"),
+    ]

@@ -6,7 +6,6 @@ write_page(Path("report.html"), "Four robots", [run, ...])
 
 from __future__ import annotations
 
-import base64
 import json
 import math
 import re
@@ -22,6 +21,7 @@ import numpy as np
 from inverse_dynamics.base.files import write_text_whole
 from inverse_dynamics.base.wording import printable, solver_name
 from inverse_dynamics.figures import palette
+from inverse_dynamics.figures.scene import base64_of
 from inverse_dynamics.figures.thinning import error_limit, peaks
 
 if TYPE_CHECKING:
@@ -135,16 +135,23 @@ def render_page(
 ) -> str:
     """The page as text."""
     views = [_view(run, i) for i, run in enumerate(runs)]
-    script = "\n".join(_asset(name) for name in ("scene.js", "plots.js", "viewer.js"))
-    return template("page.html").render(
+    return render_players(
+        "page.html",
+        [_data(run, view["id"]) for run, view in zip(runs, views, strict=True)],
         title=title,
-        script=script,
-        data=_json_for_html([_data(run, i) for i, run in enumerate(runs)]),
         runs=views,
         glance=_glance(views) if len(views) > 1 and summary is None else None,
         notes=notes,
         summary=summary,
     )
+
+
+def render_players(name: str, data: Sequence[Mapping[str, Any]], **values: Any) -> str:
+    """A page of that name with a player for each section that data describe: see viewer.js."""
+    script = "\n".join(map(_asset, ("scene.js", "plots.js", "viewer.js")))
+    # JSON that can't end the script element that holds it
+    text = json.dumps(data, allow_nan=False).replace("<", "\\u003c")
+    return template(name).render(script=script, data=text, **values)
 
 
 def template(name: str) -> Template:
@@ -231,72 +238,72 @@ def _glance(views: Sequence[Mapping[str, Any]]) -> ReportTable:
     )  # fmt: skip
 
 
-def _data(run: ReportRun, index: int) -> dict[str, Any]:
+def _data(run: ReportRun, section: str) -> dict[str, Any]:
     """A run for the script."""
     # The motion in 3D is drawn at screen rate and interpolated: evenly spaced samples serve it.
     stride = math.ceil(len(run.time) / MAX_SAMPLES)
     drawn = np.unique(np.append(np.arange(0, len(run.time), stride), len(run.time) - 1))
-    start, time = run.time[0], run.time - run.time[0]
-    valid = np.ones(len(time), dtype=bool)
-    for begin, end in run.left_out:
-        valid[slice(*np.searchsorted(run.time, (begin, np.nextafter(end, np.inf))))] = False
-    error = run.computed - run.measured if run.error is None else run.error
-
-    def series(values: Floats, *, is_error: bool = False) -> dict[str, Any]:
-        limit = {"limit": error_limit(values[valid]) or 1.0} if is_error else {}
-        return {**_series(time, values), **limit}
-
+    start = run.time[0]
     return {
-        "id": f"run-{index + 1}",
-        "name": run.name,
-        "error_name": run.error_name,
-        "joints": [
-            {
-                "name": row.joint,
-                "unit": row.unit,
-                "measured": series(run.measured[:, j]),
-                "computed": series(run.computed[:, j]),
-                "error": series(error[:, j], is_error=True),
-                "others": [
-                    {
-                        "name": name,
-                        "computed": series(other[:, j]),
-                        "error": series(other[:, j] - run.measured[:, j], is_error=True),
-                    }
-                    for name, other in run.others.items()
-                ],
-                "band": [
-                    {"from": b.start - start, "to": b.end - start, "half": float(b.half[j])}
-                    for b in run.bands
-                ],
-            }
-            for j, row in enumerate(run.table)
-        ],
-        "others_shown": run.others_shown,
-        "band_is_of_errors": run.error is not None,
+        "id": section,
+        "links": list(run.links),
+        "motions": [motion_data(run.time[drawn] - start, run.q[drawn])],
+        "plots": [plot for j in range(len(run.table)) for plot in _plots(run, j)],
         "left_out": [[begin - start, end - start] for begin, end in run.left_out],
         "contacts": [[begin - start, end - start] for begin, end in run.contacts],
-        "time": _base64(time[drawn]),
-        "q": _base64(run.q[drawn].T),
-        "links": list(run.links),
     }
 
 
-def _series(time: Floats, values: Floats) -> dict[str, str]:
+def motion_data(time: Floats, q: Floats) -> dict[str, Any]:
+    """A motion (N,) s, (N, n) for the script."""
+    return {"time": base64_of(time, "<f4"), "q": [base64_of(column, "<f4") for column in q.T]}
+
+
+def series_data(name: str, style: str, time: Floats, values: Floats) -> dict[str, Any]:
+    """A series (N,) of a plot for the script. style: a colour of the page."""
+    data = {"time": base64_of(time, "<f4"), "values": base64_of(values, "<f4")}
+    return {"name": name, "style": style, **data}
+
+
+def _plots(run: ReportRun, j: int) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Torques of a joint, and their errors."""
+    start, unit = run.time[0], run.table[j].unit
+    measured, error = run.measured[:, j], run.error
+    band = [
+        {"from": b.start - start, "to": b.end - start, "half": float(b.half[j])} for b in run.bands
+    ]
+    own = run.computed[:, j] - measured if error is None else error[:, j]
+    torques = [_series(run, "measured", "measured", measured)]
+    errors = []
+    for k, (name, other) in enumerate(run.others.items()):
+        hidden, style = {"hidden": not run.others_shown}, f"run{k % 4 + 1}"
+        torques.append({**_series(run, name, style, other[:, j]), **hidden})
+        error_of_other = _error_series(run, name, style, other[:, j] - measured)
+        errors.append({**error_of_other, **hidden})
+    torques.append(_series(run, run.name, "computed", run.computed[:, j]))
+    errors.append(_error_series(run, run.error_name, "error", own))
+    of_torques = band if error is None else []
+    return (
+        {"label": run.table[j].joint, "unit": unit, "series": torques, "band": of_torques},
+        {"label": run.error_name, "unit": unit, "series": errors, "band": band},
+    )
+
+
+def _series(run: ReportRun, name: str, style: str, values: Floats) -> dict[str, Any]:
     """Values for a plot; with times of their own where they are thinned."""
-    if len(time) <= MAX_SAMPLES:
-        return {"values": _base64(values)}
-    kept = peaks(values, MAX_SAMPLES)
-    return {"time": _base64(time[kept]), "values": _base64(values[kept])}
+    if len(run.time) > MAX_SAMPLES:
+        kept = peaks(values, MAX_SAMPLES)
+        return series_data(name, style, run.time[kept] - run.time[0], values[kept])
+    return {"name": name, "style": style, "values": base64_of(values, "<f4")}
 
 
-def _base64(values: Floats) -> str:
-    return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
-
-
-def _json_for_html(value: Any) -> str:
-    """JSON that can't end the script element that holds it."""
-    return json.dumps(value, allow_nan=False).replace("<", "\\u003c")
+def _error_series(run: ReportRun, name: str, style: str, values: Floats) -> dict[str, Any]:
+    """The same with the limit of its axis."""
+    valid = np.ones(len(run.time), dtype=bool)
+    for begin, end in run.left_out:
+        valid[slice(*np.searchsorted(run.time, (begin, np.nextafter(end, np.inf))))] = False
+    limit = error_limit(values[valid]) or 1.0
+    return {**_series(run, name, style, values), "limit": limit}
 
 
 _LEAST_PLAIN = 1e-3  # a smaller number has a power of ten

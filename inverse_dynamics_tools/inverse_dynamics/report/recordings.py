@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One page for many recordings of a robot: errors of every joint in each of them, and what failed.
 
-write_recordings_page(Path("report.html"), "UR10", summaries, {"tuesday": "no such recording"})
+text = render_recordings_page("UR10", summaries, {"tuesday": "no such recording"}, {})
 """
 
 from __future__ import annotations
@@ -12,33 +12,16 @@ from statistics import median
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from inverse_dynamics.base.files import write_text_whole
 from inverse_dynamics.base.wording import counted, listed, solver_name
 from inverse_dynamics.report.page import aligned, template
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
     from inverse_dynamics.evaluation.summary import EvaluationSummary
 
 _MOST_SHADED = 3.0  # times the median
 _EARLIEST = 1e9  # s, September 2001: an earlier stamp is no date
-
-
-def write_recordings_page(
-    path: Path,
-    title: str,
-    summaries: Sequence[EvaluationSummary],
-    failures: Mapping[str, str],
-    links: Mapping[str, str],
-) -> None:
-    """Write the page, whole or not at all; what is there is replaced. Raises OutputError.
-
-    summaries: one or more, of the same joints. failures: recording to message. links: recording to the
-    file, in the directory of its name, that the name leads to; none: to the directory.
-    """
-    write_text_whole(path, render_recordings_page(title, summaries, failures, links))
 
 
 def render_recordings_page(
@@ -47,7 +30,11 @@ def render_recordings_page(
     failures: Mapping[str, str],
     links: Mapping[str, str],
 ) -> str:
-    """The page as text."""
+    """The page as text.
+
+    summaries: one or more, of the same joints. failures: recording to message. links: recording to the
+    file, in the directory of its name, that the name leads to; none: to the directory.
+    """
     columns = list(zip(*([e.rmse for e in s.errors] for s in summaries), strict=True))  # of joints
     middle = [median(column) for column in columns]
     texts = [aligned([*column, m]) for column, m in zip(columns, middle, strict=True)]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of a timed path: the robot beside itself, timed by an acceleration limit; speed, torques, limits.
 
-write_retimed_page(Path("report.html"), retime(path, "ur10_real"))
+text = render_retimed_page(retime(path, "ur10_real"))
 """
 
 from __future__ import annotations
@@ -10,32 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.base.files import write_text_whole
 from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.evaluation.retiming import sample_times
 from inverse_dynamics.figures.retiming import JOINT_COLORS
 from inverse_dynamics.figures.scene import Scene, read_scene
-from inverse_dynamics.report.page import (
-    ReportTable,
-    _asset,
-    _base64,
-    _json_for_html,
-    template,
-)
+from inverse_dynamics.report.evaluations import model_facts
+from inverse_dynamics.report.page import ReportTable, motion_data, render_players, series_data
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.evaluation.retiming import Retimed
 
 RATE = 250.0  # Hz, of what is drawn
 _FASTEST, _OTHER = ("fastest", "computed"), ("constant acceleration", "error")  # names, colours
-
-
-def write_retimed_page(path: Path, result: Retimed) -> None:
-    """Write the page, whole or not at all; what is there is replaced. Raises OutputError."""
-    write_text_whole(path, render_retimed_page(result))
 
 
 def render_retimed_page(result: Retimed) -> str:
@@ -52,12 +39,14 @@ def render_retimed_page(result: Retimed) -> str:
         *(_torque_plot(result, j, motions) for j in range(len(arm.units))),
     ]
     data = {
-        "links": list(scene.links),
-        "joints": len(arm.units),
-        "motions": [{"time": _base64(time), "q": _base64(q.T)} for _, time, q, _ in motions],
+        "id": "main",
+        "links": scene.links,
+        "motions": [motion_data(time, q) for _, time, q, _ in motions],
         "plots": plots,
     }
-    return template("retimed.html").render(
+    return render_players(
+        "retimed.html",
+        [data],
         title=f"{robot.name}: the fastest motion along a path",
         key=_key(result),
         motions=[
@@ -71,8 +60,6 @@ def render_retimed_page(result: Retimed) -> str:
         table=_table(result),
         assumptions=_assumptions(result),
         notes=[*result.notes, *scene.notes],
-        data=_json_for_html(data),
-        script="\n".join(_asset(name) for name in ("scene.js", "plots.js", "retimed.js")),
     )
 
 
@@ -92,19 +79,15 @@ def _key(result: Retimed) -> list[tuple[str, str]]:
     ]
 
 
-def _series(name: str, style: str, time: Floats, values: Floats) -> dict[str, str]:
-    return {"name": name, "style": style, "time": _base64(time), "values": _base64(values)}
-
-
 def _speed_plot(result: Retimed) -> dict[str, Any]:
     """Speeds of both motions over time; the limit is that of the place which the fastest one passes."""
     timed, other = result.timed, result.by_acceleration
     limit = np.nan_to_num(result.speed_limit, nan=0.0)
     shown = np.minimum(limit, 1.25 * timed.speed.max())
-    series = [_series("limit", "measured", timed.time, shown)]
+    series = [series_data("limit", "measured", timed.time, shown)]
     if other is not None:
-        series.append(_series(*_OTHER, other.time, other.speed))
-    series.append(_series(*_FASTEST, timed.time, timed.speed))
+        series.append(series_data(*_OTHER, other.time, other.speed))
+    series.append(series_data(*_FASTEST, timed.time, timed.speed))
     return {"label": "speed along the path", "unit": "rad/s", "series": series}
 
 
@@ -113,9 +96,9 @@ def _torque_plot(
 ) -> dict[str, Any]:
     ends = np.append(result.time, max(time[-1] for _, time, _, _ in motions))
     limit = np.append(result.torque_limit[:, j], result.torque_limit[-1, j])
-    series = [_series("limit", "measured", ends, sign * limit) for sign in (1, -1)]
+    series = [series_data("limit", "measured", ends, sign * limit) for sign in (1, -1)]
     for (name, style), time, _, torques in reversed(motions):
-        series.append(_series(name, style, time, torques[:, j]))
+        series.append(series_data(name, style, time, torques[:, j]))
     half = float(result.band[j])
     return {
         "label": result.joint_names[j],
@@ -164,12 +147,9 @@ def _table(result: Retimed) -> ReportTable:
 
 
 def _assumptions(result: Retimed) -> list[tuple[str, str]]:
-    robot, limits = result.robot, result.limits
+    limits = result.limits
     rows = [
-        ("solver", robot.plugin),
-        ("model file", robot.model.name if robot.model else ""),
-        ("description", robot.urdf.name if robot.urdf else ""),
-        ("friction", "as the solver models it" if robot.friction else "left out"),
+        *model_facts(result.robot),
         *(
             (f"limits of {name}", ", ".join(f"{value:g}" for value in getattr(limits, name)))
             for name in ("velocity", "acceleration", "jerk")

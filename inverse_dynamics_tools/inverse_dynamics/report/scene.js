@@ -412,12 +412,6 @@ function decode(base64) {
   return new Float32Array(bytesOf(base64));
 }
 
-// Rows of a matrix stored joint by joint.
-function rows(base64, count) {
-  const all = decode(base64), length = all.length / count;
-  return Array.from({length: count}, (_, j) => all.subarray(j * length, (j + 1) * length));
-}
-
 // Joint positions at time t, linear between samples.
 function positionsAt(time, q, t) {
   const i = indexAt(time, t), next = Math.min(i + 1, time.length - 1);

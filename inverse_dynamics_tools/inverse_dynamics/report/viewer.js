@@ -1,43 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The page's behaviour: one player per run couples the robot in 3D with the plots of its joints.
-// Data of the page: <script type="application/json" id="runs">; arrays are base64 of little-endian float32.
+// The page's behaviour: a player of a section couples robots in 3D with plots, all of which it shows at one time.
+// Data of the page: <script type="application/json" id="runs">, for each section {id, links, motions: [{time, q}], plots}.
+// A motion has a canvas, a plot an element of the class; plots: see plots.js. A series without times has those of the first motion.
+// Arrays are base64 of little-endian float32.
 "use strict";
 
 class Player {
   constructor(section, run) {
     this.section = section;
-    this.time = decode(run.time);
-    this.q = rows(run.q, run.joints.length);
-    this.now = this.time[0];
-    this.end = this.time[this.time.length - 1];
+    this.motions = run.motions.map(({time, q}) => ({time: decode(time), q: q.map(decode)}));
+    const {time, q} = this.motions[0];
+    this.now = this.start = time[0];
+    this.end = Math.max(...this.motions.map((motion) => motion.time.at(-1)));
     this.playing = false;
-    const canvas = section.querySelector(".robot canvas");
-    const motion = Array.from({length: 60}, (_, k) => positionsAt(this.time, this.q, this.now + k / 59 * (this.end - this.now)));
-    this.scene = run.links.length ? createScene(canvas, run.links, motion) : null;
-    section.querySelector(".no-webgl").hidden = this.scene !== null;
-    this.plots = createPlotGroup(this.time, {onCursor: (t) => this.seek(t)});
-    this.addPlots(run);
+    const seen = Array.from({length: 60}, (_, k) => positionsAt(time, q, this.start + k / 59 * (time.at(-1) - this.start)));
+    const canvases = section.querySelectorAll(".robot canvas"), excuses = section.querySelectorAll(".no-webgl");
+    this.motions.forEach((motion, k) => {
+      motion.scene = run.links.length ? createScene(canvases[k], run.links, seen) : null;
+      excuses[k].hidden = motion.scene !== null;
+    });
+    this.plots = createPlotGroup([this.start, this.end], {onCursor: (t) => this.seek(t)});
+    const elements = section.querySelectorAll(".plot"), {left_out, contacts} = run;
+    run.plots.forEach((plot, k) => this.plots.add(elements[k], {left_out, contacts, ...plot, series: plot.series.map(
+        (series) => ({...series, time: series.time ? decode(series.time) : time, values: decode(series.values)}))}));
     this.connectControls();
     this.seek(this.now);
-  }
-
-  addPlots(run) {
-    // A series has times of its own where the page holds only its peaks.
-    const series = (name, data, style = name, hidden = false) => ({
-      ...data, name, style, hidden, values: decode(data.values), time: data.time ? decode(data.time) : this.time});
-    const {left_out, contacts, error_name, others_shown} = run;
-    run.joints.forEach((joint, j) => {
-      const [torque_element, error_element] = this.section.querySelectorAll(`[data-joint="${j}"] .plot`);
-      const others = (what) => joint.others.map(
-          (other, i) => series(other.name, other[what], `run${i % 4 + 1}`, !others_shown));
-      const common = {unit: joint.unit, left_out, contacts};
-      const band = run.band_is_of_errors ? [] : joint.band;
-      this.plots.add(torque_element, {...common, label: joint.name, band, series: [
-        series("measured", joint.measured), ...others("computed"), series(run.name, joint.computed, "computed")]});
-      this.plots.add(error_element, {...common, label: error_name, band: joint.band, series: [
-        ...others("error"), series(error_name, joint.error, "error")]});
-    });
   }
 
   connectControls() {
@@ -48,7 +36,7 @@ class Player {
     for (const box of this.section.querySelectorAll(".legend input")) {
       box.addEventListener("change", () => this.plots.setHidden(box.value, !box.checked));
     }
-    this.slider.min = this.time[0];
+    this.slider.min = this.start;
     this.slider.max = this.end;
     this.button.addEventListener("click", () => this.toggle());
     this.slider.addEventListener("input", () => this.seek(Number(this.slider.value)));
@@ -61,17 +49,17 @@ class Player {
     });
     this.section.querySelector(".zoom-in").addEventListener("click", () => this.plots.zoom(0.7));
     this.section.querySelector(".show-all").addEventListener("click", () => this.plots.showAll());
-    this.section.querySelector(".reset-view").addEventListener("click", () => this.scene?.reset());
+    this.section.querySelector(".reset-view").addEventListener("click", () => this.motions.forEach(({scene}) => scene?.reset()));
   }
 
   seek(t) {
-    this.now = Math.min(Math.max(t, this.time[0]), this.end);
+    this.now = Math.min(Math.max(t, this.start), this.end);
     this.slider.value = this.now;
     this.clock.textContent = `${this.now.toFixed(2)} s of ${this.end.toFixed(2)} s`;
     this.slider.setAttribute("aria-valuetext", this.clock.textContent);
     this.section.dataset.time = this.now.toFixed(4);
     this.plots.setCursor(this.now);
-    this.scene?.draw(positionsAt(this.time, this.q, this.now));
+    for (const {scene, time, q} of this.motions) scene?.draw(positionsAt(time, q, this.now));
   }
 
   toggle() {
@@ -79,7 +67,7 @@ class Player {
   }
 
   play() {
-    if (this.now >= this.end) this.seek(this.time[0]);
+    if (this.end - this.now < 1e-6) this.seek(this.start);  // the slider rounds
     this.playing = true;
     this.button.textContent = "Pause";
     this.button.setAttribute("aria-pressed", "true");
@@ -112,7 +100,7 @@ class Player {
       " ": () => this.toggle(),
       ArrowLeft: () => this.seek(this.now - step),
       ArrowRight: () => this.seek(this.now + step),
-      Home: () => this.seek(this.time[0]),
+      Home: () => this.seek(this.start),
       End: () => this.seek(this.end),
       "+": () => this.plots.zoom(0.7),
       "-": () => this.plots.zoom(1 / 0.7),

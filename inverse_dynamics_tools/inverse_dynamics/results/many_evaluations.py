@@ -274,7 +274,7 @@ def failures_text(what: str, failures: Sequence[FailedRecording]) -> str:
 
 
 def _write(result: ManyEvaluations, target: Path, names: Sequence[str], robot: Robot) -> None:
-    from inverse_dynamics.report.recordings import write_recordings_page
+    from inverse_dynamics.report.recordings import render_recordings_page
 
     _write_csv(target / "summary.csv", result.rows)
     recordings = sorted(_recordings(result), key=lambda recording: names.index(recording["name"]))
@@ -283,7 +283,8 @@ def _write(result: ManyEvaluations, target: Path, names: Sequence[str], robot: R
     title = f"{robot.description or robot.name}: {counted(len(recordings), 'recording')}"
     failures = {failure.name: failure.error for failure in result.failures}
     links = {s.name: PAGE for s in result.summaries if (target / s.name / PAGE).is_file()}
-    write_recordings_page(target / PAGE, title, result.summaries, failures, links)
+    page = render_recordings_page(title, result.summaries, failures, links)
+    write_text(target / PAGE, page)
 
 
 def _with_whole_paths(task: _Task) -> _Task:

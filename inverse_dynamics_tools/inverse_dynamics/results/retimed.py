@@ -22,7 +22,7 @@ from inverse_dynamics.data.joint_trajectories import MESSAGE_TYPE, typestore
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.figures.plots import check_formats
 from inverse_dynamics.figures.retiming import save_retime_figure
-from inverse_dynamics.report.retimed import write_retimed_page
+from inverse_dynamics.report.retimed import render_retimed_page
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -88,7 +88,7 @@ def write_retimed(
         move_up(directory / out.name)
         write_text(directory / TABLE, table_text(result))
         save_retime_figure(result, *(directory / f"torques.{suffix}" for suffix in figures))
-        write_retimed_page(directory / PAGE, result)
+        write_text(directory / PAGE, render_retimed_page(result))
         write_text(directory / MARK, json_text(summary(result)))
 
 
