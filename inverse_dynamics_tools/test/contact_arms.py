@@ -18,9 +18,9 @@ import mujoco
 import numpy as np
 import yaml
 from conftest import RIGID_BODY
-from simulation_arms import CHAINS, robots_package, simulated, urdf_of
+from simulation_arms import CHAINS, robots_package, urdf_of
 
-from inverse_dynamics import Solver
+from inverse_dynamics import FastModel, Solver
 from inverse_dynamics.simulation.model import GRAVITY, _inertia, _read_spec, _write_true_inertia
 from inverse_dynamics.simulation.trajectory import FourierTrajectory, WaypointTrajectory
 from inverse_dynamics.simulation.urdf import chain_from_urdf
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
 
 PERIOD = 1e-3  # s
@@ -119,84 +118,14 @@ def still(posture: Floats) -> FourierTrajectory:
 
 def write_model(name: str, file: Path) -> Path:
     """Bodies of the URDF with the friction of the identified robot, as a model file."""
-    robot = simulated(name)
-    placements = _placements(name)
-    joints = [
-        {
-            "name": joint,
-            "type": "revolute",
-            "placement": {**_as_in_urdf(R, p), "axis": [float(x) for x in axis]},
-            "friction": friction,
-            "link": [float(x) for x in link],
-        }
-        for joint, (R, p, axis), friction, link in zip(
-            robot.chain.joint_names,
-            placements[:-1],
-            _identified_friction(name),
-            inertial_parameters(robot).reshape(-1, 10),
-            strict=True,
-        )
-    ]
-    R_tip, p_tip, _ = placements[-1]
-    model = {
-        "schema": 1,
-        "name": name,
-        "source": "bodies of the URDF, friction of the identified robot",
-        "validity": "tests",
-        "units": "SI",
-        "geometry": "placements",
-        "gravity": list(GRAVITY),
-        "parameters": "about_origin",
-        "tip": _as_in_urdf(R_tip, p_tip),
-        "joints": joints,
-    }
+    root, tip = CHAINS[name]
+    bodies = FastModel.from_urdf(urdf_of(name), root=root, tip=tip)
+    model = yaml.safe_load(bodies.file_text(name=name, source="tests", validity="tests"))
+    for joint, friction in zip(model["joints"], _identified_friction(name), strict=True):
+        joint["friction"] = friction
+    del model["checks"]  # of the bodies alone
     file.write_text(yaml.safe_dump(model, sort_keys=False))
     return file
-
-
-def inertial_parameters(robot: SimulatedRobot) -> Floats:
-    """(10 n,) about the origins of the links' frames; what is fixed to a link counts as part of it."""
-    model, data = robot.model, robot.new_data()
-    mujoco.mj_kinematics(model, data)
-    links = [int(model.joint(name).bodyid[0]) for name in robot.chain.joint_names]
-    p = np.zeros((len(links), 10))
-    for body in range(1, model.nbody):
-        link = body
-        while link and link not in links:
-            link = model.body_parentid[link]
-        if not link:
-            continue  # fixed to the ground
-        R_WL = data.xmat[link].reshape(3, 3)
-        R = R_WL.T @ data.ximat[body].reshape(3, 3)
-        c = R_WL.T @ (data.xipos[body] - data.xpos[link])
-        m = model.body_mass[body]
-        tensor = R @ np.diag(model.body_inertia[body]) @ R.T + m * (
-            c @ c * np.eye(3) - np.outer(c, c)
-        )
-        p[links.index(link)] += np.r_[m, m * c, tensor[np.triu_indices(3)]]
-    return p.ravel()
-
-
-def _placements(name: str) -> list[tuple[Floats, Floats, Floats]]:
-    """R, p of each link in the one before, and its joint's axis; last the tip."""
-    robot = simulated(name)
-    data = robot.new_data()
-    mujoco.mj_kinematics(robot.model, data)
-    joints = [robot.model.joint(joint) for joint in robot.chain.joint_names]
-    links = [data.body(joint.bodyid[0]) for joint in joints] + [data.body(robot.chain.tip)]
-    axes = [np.array(joint.axis) for joint in joints] + [np.array([0.0, 0.0, 1.0])]
-    placements, before = [], data.body(robot.chain.root)
-    for link, axis in zip(links, axes, strict=True):
-        R_WB = np.array(before.xmat).reshape(3, 3)
-        R = R_WB.T @ np.array(link.xmat).reshape(3, 3)
-        placements.append((R, R_WB.T @ (link.xpos - before.xpos), axis))
-        before = link
-    return placements
-
-
-def _as_in_urdf(R: Floats, p: Floats) -> dict[str, list[float]]:
-    rpy = [np.arctan2(R[2, 1], R[2, 2]), -np.arcsin(R[2, 0]), np.arctan2(R[1, 0], R[0, 0])]
-    return {"xyz": [float(x) for x in p], "rpy": [float(x) for x in rpy]}
 
 
 def _identified_friction(name: str) -> list[dict[str, float | str]]:
