@@ -21,7 +21,7 @@ from studies import ROBOTS, show, table
 
 from inverse_dynamics import identify
 from inverse_dynamics.data.public_recordings import data_directory
-from inverse_dynamics.identification.summary import headings, held_out_rows
+from inverse_dynamics.report.tables import held_out_table
 
 if TYPE_CHECKING:
     from inverse_dynamics.identification.result import Identification
@@ -65,11 +65,13 @@ def recording_of(name: str) -> Path:
 def real_robot(name: str) -> str:
     """The section of a robot."""
     found: Identification = identified(name)
+    errors = held_out_table(found)
+    headings = ("joint", *errors.headings[2:-1], "in 95 % band")
     rows = [
-        (row.joint, *(f"{value:.3g}" for value in row.rmse), f"{100 * row.coverage:.1f} %")
-        for row in held_out_rows(found)
+        (joint, *(f"{value:.3g}" for value in rmse), f"{percent:.1f} %")
+        for joint, _, *rmse, percent in errors.rows
     ]
-    return f"### {name}: {ROBOTS[name]}\n\n{table(('joint', *headings(found), 'in 95 % band'), rows)}\n"
+    return f"### {name}: {ROBOTS[name]}\n\n{table(headings, rows)}\n"
 
 
 def known_robots(directory: Path) -> str:

@@ -18,12 +18,10 @@ from inverse_dynamics.report.page import (
     Band,
     ReportRun,
     ReportSummary,
-    ReportTable,
-    aligned,
-    joint_table,
     render_page,
 )
 from inverse_dynamics.report.recordings import render_recordings_page
+from inverse_dynamics.report.tables import ReportTable, aligned, joint_table
 from inverse_dynamics.robot.robots import load_robot
 
 SCREENS = [(390, "light"), (390, "dark"), (1920, "dark"), (1300, "light")]

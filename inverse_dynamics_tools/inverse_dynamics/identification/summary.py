@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an identification found, as rows and sentences for the screen and the page."""
+"""What an identification found, in sentences for the screen and the page."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from inverse_dynamics.identification.result import COLUMNS, LAWS
+from inverse_dynamics.identification.result import LAWS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
-    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.identification.result import Choice, DriveGain, Identification, Level
 
 TITLES = {
@@ -23,50 +19,7 @@ TITLES = {
     "present_refitted": "present, friction refitted",
     "identified": "identified",
 }
-"""What columns are called."""
-
-
-@dataclass(frozen=True)
-class HeldOutRow:
-    """Held-out errors of a joint, by the order of columns_of()."""
-
-    joint: str
-    unit: str
-    rmse: tuple[float, ...]
-    coverage: float  # share of the samples within the 95 % band
-
-
-def columns_of(found: Identification) -> tuple[str, ...]:
-    """The names of COLUMNS that there are."""
-    return tuple(column for column in COLUMNS if column in found.held_out)
-
-
-def headings(found: Identification) -> tuple[str, ...]:
-    """The titles of columns_of()."""
-    return tuple(TITLES[column] for column in columns_of(found))
-
-
-def held_out_rows(found: Identification) -> list[HeldOutRow]:
-    """One per joint; then, where all have one unit, the mean."""
-    return error_rows(found, found.held_out, found.coverage)
-
-
-def error_rows(
-    found: Identification, errors: Mapping[str, Floats], coverage: Floats
-) -> list[HeldOutRow]:
-    """The same of other errors (n,) by name of COLUMNS; NaN for a column that these haven't."""
-    columns = columns_of(found)
-    values = np.array(
-        [errors.get(column, np.full(len(found.joints), np.nan)) for column in columns]
-    )
-    rows = [
-        HeldOutRow(joint, unit, tuple(map(float, values[:, j])), float(coverage[j]))
-        for j, (joint, unit) in enumerate(zip(found.joints, found.units, strict=True))
-    ]
-    if len(set(found.units)) == 1 and len(rows) > 1:
-        means = tuple(map(float, values.mean(axis=1)))
-        rows.append(HeldOutRow("mean", found.units[0], means, float(coverage.mean())))
-    return rows
+"""What names of COLUMNS are called, in the order of tables."""
 
 
 def choices_told(found: Identification) -> list[tuple[str, str]]:

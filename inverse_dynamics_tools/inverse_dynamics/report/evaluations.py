@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.evaluation.evaluation import CAUSE
 from inverse_dynamics.figures.scene import Scene, read_scene
-from inverse_dynamics.report.page import ReportRun, ReportTable, bands_of, joint_table
+from inverse_dynamics.report.page import ReportRun, bands_of
+from inverse_dynamics.report.tables import comparison_table, joint_table
 
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation.comparison import Comparison
@@ -54,22 +55,9 @@ def report_comparison(comparison: Comparison, title: str = "", *, shown: bool = 
         name=name,
         others={label: e.computed for label, e in zip(labels, others, strict=True)},
         others_shown=shown,
-        tables=[_rmse_table(comparison), *run.tables],
+        tables=[comparison_table(comparison), *run.tables],
         assumptions=[*run.assumptions, *((label, e.robot.plugin) for label, e in zip(labels, others, strict=True))],
     )  # fmt: skip
-
-
-def _rmse_table(comparison: Comparison) -> ReportTable:
-    units, rmse = comparison.evaluations[0].units, comparison.rmse
-    rows = [
-        (joint, *values, unit)
-        for joint, unit, values in zip(comparison.joint_names, units, rmse.T.tolist(), strict=True)
-    ]
-    total = len(set(units)) == 1 and len(units) > 1
-    if total:
-        rows.append(("mean", *rmse.mean(axis=1).tolist(), units[0]))
-    headings = ("joint", *comparison.labels, "unit")
-    return ReportTable(f"RMSE of {' and '.join(comparison.labels)}", headings, rows, total=total)
 
 
 def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:

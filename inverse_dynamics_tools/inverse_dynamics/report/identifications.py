@@ -13,20 +13,19 @@ from inverse_dynamics.base.wording import counted
 from inverse_dynamics.evaluation.evaluation import joint_errors
 from inverse_dynamics.figures.scene import Scene, read_scene
 from inverse_dynamics.identification.knowledge import PARAMETERS, UNITS
-from inverse_dynamics.identification.summary import TITLES, choices_told, headings, held_out_rows
+from inverse_dynamics.identification.summary import TITLES, choices_told
 from inverse_dynamics.report.page import (
     ReportRun,
     ReportSummary,
-    ReportTable,
     bands_of,
     render_page,
 )
+from inverse_dynamics.report.tables import ReportTable, held_out_table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from inverse_dynamics.identification.result import HeldOutBlock, Identification
-    from inverse_dynamics.identification.summary import HeldOutRow
 
 
 def render_identification(found: Identification, tests: Sequence[ReportTable] = ()) -> str:
@@ -90,24 +89,11 @@ def _summary(found: Identification, tests: Sequence[ReportTable]) -> ReportSumma
     )
     known = (_friction(found), _intervals(found), _prior(found))
     return ReportSummary(
-        table=error_table(found, held_out_rows(found), "Held-out error", note),
+        table=held_out_table(found, note=note),
         facts_title="What was chosen, and why",
         facts=choices_told(found),
         notes=[*(finding.text for finding in found.findings), *found.notes],
         more=[*tests, *(table for table in known if table.rows)],
-    )
-
-
-def error_table(
-    found: Identification, rows: Sequence[HeldOutRow], title: str, note: str
-) -> ReportTable:
-    """Errors of each joint by each model."""
-    return ReportTable(
-        title=title,
-        headings=("joint", "unit", *headings(found), "in 95 % band [%]"),
-        rows=[(row.joint, row.unit, *row.rmse, 100 * row.coverage) for row in rows],
-        note=note,
-        total=rows[-1].joint == "mean",
     )
 
 

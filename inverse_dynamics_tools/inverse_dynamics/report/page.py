@@ -23,6 +23,7 @@ from inverse_dynamics.base.wording import printable, solver_name
 from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.scene import base64_of
 from inverse_dynamics.figures.thinning import error_limit, peaks
+from inverse_dynamics.report.tables import ReportTable, joint_table, number
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -85,22 +86,6 @@ class ReportRun:
 
 
 @dataclass(frozen=True)
-class ReportTable:
-    """A table: rows of texts and numbers, NaN where there is no number; total: the last row sums the others up."""
-
-    title: str
-    headings: Sequence[str]
-    rows: Sequence[Sequence[str | float]]
-    note: str = ""
-    total: bool = False
-
-    @property
-    def cells(self) -> list[tuple[str, ...]]:
-        """The rows as texts, numbers aligned in each column."""
-        return list(zip(*(aligned(column) for column in zip(*self.rows, strict=True)), strict=True))
-
-
-@dataclass(frozen=True)
 class ReportSummary:
     """The part before the runs: a table, facts beside it, notes, and tables to be unfolded."""
 
@@ -109,12 +94,6 @@ class ReportSummary:
     facts: Sequence[tuple[str, str]]
     notes: Sequence[str] = ()
     more: Sequence[ReportTable] = ()
-
-
-def joint_table(title: str, errors: Sequence[JointError]) -> ReportTable:
-    """Errors of each joint."""
-    rows = [(e.joint, e.rmse, e.mae, e.bias, e.unit, 100 * e.nrmse, e.r2) for e in errors]
-    return ReportTable(title, ("joint", "RMSE", "MAE", "bias", "unit", "NRMSE [%]", "R²"), rows)
 
 
 def write_page(
@@ -304,39 +283,3 @@ def _error_series(run: ReportRun, name: str, style: str, values: Floats) -> dict
         valid[slice(*np.searchsorted(run.time, (begin, np.nextafter(end, np.inf))))] = False
     limit = error_limit(values[valid]) or 1.0
     return {**_series(run, name, style, values), "limit": limit}
-
-
-_LEAST_PLAIN = 1e-3  # a smaller number has a power of ten
-_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_FIGURE_SPACE, _PUNCTUATION_SPACE = "\N{FIGURE SPACE}", "\N{PUNCTUATION SPACE}"
-
-
-def number(value: float) -> str:
-    """Three significant digits, as people write them; a dash where there is no number."""
-    if not math.isfinite(value):
-        return "\N{EN DASH}"
-    mantissa, _, exponent = f"{value:.2e}".partition("e")  # of the rounded number: 0.9999 is 1.00
-    if 0 < abs(value) < _LEAST_PLAIN:
-        return f"{mantissa}·10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
-    return f"{value:.{max(0, 2 - int(exponent))}f}" if value else "0"
-
-
-def aligned(values: Sequence[str | float]) -> list[str]:
-    """The numbers of a column, their decimal points below each other. Texts stay."""
-    texts = [value if isinstance(value, str) else number(value) for value in values]
-    plain = [not isinstance(v, str) and t[-1].isascii() for v, t in zip(values, texts, strict=True)]
-    decimals = [len(text.partition(".")[2]) for text in texts]
-    longest = max((d for d, is_plain in zip(decimals, plain, strict=True) if is_plain), default=0)
-    return [
-        _padded(text, longest) if is_plain else text
-        for text, is_plain in zip(texts, plain, strict=True)
-    ]
-
-
-def _padded(text: str, decimals: int) -> str:
-    """With spaces as wide as the decimals that other numbers have, which no page may escape."""
-    from markupsafe import Markup
-
-    own = len(text.partition(".")[2])
-    point = _PUNCTUATION_SPACE if decimals and not own else ""
-    return Markup(text + point + _FIGURE_SPACE * (decimals - own))

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from inverse_dynamics.base.wording import counted, listed, solver_name
-from inverse_dynamics.report.page import aligned, template
+from inverse_dynamics.report.page import template
+from inverse_dynamics.report.tables import aligned
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -15,7 +15,8 @@ from inverse_dynamics.evaluation.retiming import sample_times
 from inverse_dynamics.figures.retiming import JOINT_COLORS
 from inverse_dynamics.figures.scene import Scene, read_scene
 from inverse_dynamics.report.evaluations import model_facts
-from inverse_dynamics.report.page import ReportTable, motion_data, render_players, series_data
+from inverse_dynamics.report.page import motion_data, render_players, series_data
+from inverse_dynamics.report.tables import retime_table
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
@@ -57,7 +58,7 @@ def render_retimed_page(result: Retimed) -> str:
         banded=bool(result.band.any()),
         strip=_strip(result),
         plots=plots,
-        table=_table(result),
+        table=retime_table(result),
         assumptions=_assumptions(result),
         notes=[*result.notes, *scene.notes],
     )
@@ -128,22 +129,6 @@ def _strip(result: Retimed) -> dict[str, Any]:
         if own:
             shown.append((joint, color))
     return {"spans": found, "joints": shown, "text": ", ".join(joint for joint, _ in shown)}
-
-
-def _table(result: Retimed) -> ReportTable:
-    rows = [
-        (
-            joint,
-            float(np.abs(result.efforts[:, j]).max()),
-            float(result.limits.torque[j]),
-            result.units[j],
-            float(100 * result.at_limit[j]),
-            float(np.abs(result.qd[:, j]).max()),
-        )
-        for j, joint in enumerate(result.joint_names)
-    ]
-    headings = ("joint", "peak", "limit", "unit", "at limit [% of time]", "velocity [rad/s]")
-    return ReportTable("Load of each joint", headings, rows)
 
 
 def _assumptions(result: Retimed) -> list[tuple[str, str]]:

@@ -20,9 +20,9 @@ from inverse_dynamics import _core
 from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
 from inverse_dynamics.base.plain import json_text, plain
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.identification.summary import error_rows
 from inverse_dynamics.identification.uncertainty import uncertainty_text
-from inverse_dynamics.report.identifications import error_table, render_identification
+from inverse_dynamics.report.identifications import render_identification
+from inverse_dynamics.report.tables import held_out_table
 from inverse_dynamics.results.model_files import model_file_text
 from inverse_dynamics.results.robot_files import robot_text
 from inverse_dynamics.robot.model_errors import model_errors_file
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from inverse_dynamics.identification.result import Identification
-    from inverse_dynamics.report.page import ReportTable
+    from inverse_dynamics.report.tables import ReportTable
     from inverse_dynamics.results.hold_out import HoldOut
 
 SCHEMA = 1
@@ -139,8 +139,8 @@ def _run_configuration(found: Identification, files: IdentificationFiles) -> str
 
 
 def _table_of(found: Identification, test: HoldOut) -> ReportTable:
-    rows = error_rows(found, test.rmse, test.coverage)
-    return error_table(found, rows, f"Error on {test.recording.name}", "; ".join(test.notes))
+    title, notes = f"Error on {test.recording.name}", "; ".join(test.notes)
+    return held_out_table(found, title, notes, rmse=test.rmse, coverage=test.coverage)
 
 
 def summary(found: Identification, tests: Sequence[HoldOut] = ()) -> dict[str, Any]:

@@ -50,10 +50,11 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.base.files import check_output_directory
     from inverse_dynamics.evaluation.comparison import compare
+    from inverse_dynamics.report.tables import comparison_table
     from inverse_dynamics.results.comparisons import CONTENTS, summary, write_comparison
     from inverse_dynamics.results.evaluations import read_evaluation
     from inverse_dynamics.verbs.screen import show
-    from inverse_dynamics.verbs.tables import comparison_table
+    from inverse_dynamics.verbs.tables import on_screen
 
     out, overwrite = arguments.out, arguments.overwrite
     if out is not None:
@@ -63,7 +64,7 @@ def run(arguments: argparse.Namespace) -> None:
         write_comparison(comparison, out, overwrite=overwrite, figures=arguments.figures)
     files = [out / f"comparison.{suffix}" for suffix in arguments.figures] if out else []
     lines: list[Line] = [
-        comparison_table(comparison),
+        on_screen(comparison_table(comparison)),
         ("figure", files),
         ("page", [out / "report.html"] if out else []),
     ]

@@ -88,9 +88,10 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.base.files import check_output_directory
     from inverse_dynamics.data.several_recordings import name_of
     from inverse_dynamics.evaluation.contacts import find_contacts
+    from inverse_dynamics.report.tables import contact_table, threshold_table
     from inverse_dynamics.results.contacts import CONTENTS, summary, write_contacts
     from inverse_dynamics.verbs.screen import heading, progress_bar, show
-    from inverse_dynamics.verbs.tables import contact_table, threshold_table
+    from inverse_dynamics.verbs.tables import on_screen
 
     robot = chosen_robot(arguments)
     out = arguments.out or Path(f"{name_of(arguments.bag)}_{robot.name}_contacts")
@@ -120,8 +121,8 @@ def run(arguments: argparse.Namespace) -> None:
             ("estimator", f"{contacts.estimator}, {contacts.gain:.3g} 1/s"),
             ("quiet", contacts.quiet),
             ("note", contacts.notes),
-            threshold_table(contacts),
-            contact_table(contacts) if contacts.contacts else ("contacts", "none"),
+            on_screen(threshold_table(contacts)),
+            on_screen(contact_table(contacts)) if contacts.contacts else ("contacts", "none"),
             ("figure", [out / f"contacts.{suffix}" for suffix in arguments.figures]),
             ("contacts", out / "contacts.json"),
             ("page", out / "report.html"),

@@ -46,9 +46,10 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.report.tables import comparison_table
     from inverse_dynamics.results.demo import TITLES, find_recordings, run_demo, summary
     from inverse_dynamics.verbs.screen import Screen, progress_bar, show
-    from inverse_dynamics.verbs.tables import comparison_table, mean_table
+    from inverse_dynamics.verbs.tables import mean_table, on_screen
 
     console = Screen(stderr=arguments.json)
     with progress_bar() as progress:
@@ -63,7 +64,7 @@ def run(arguments: argparse.Namespace) -> None:
     out, comparison = demo.directory, demo.comparison
     lines: list[Line] = [mean_table({TITLES[name]: e for name, e in demo.evaluations.items()})]
     if comparison is not None:
-        lines += ["UR10, real: gain by identification", comparison_table(comparison)]
+        lines += ["UR10, real: gain by identification", on_screen(comparison_table(comparison))]
     lines.append(("note", demo.notes))
     if any(out.glob("*/torques.png")):
         lines.append(("figures", f"{out}/*/torques.png"))

@@ -220,18 +220,19 @@ def _robot(arguments: argparse.Namespace) -> Robot:
 def _lines(
     found: Identification, files: IdentificationFiles, tests: Sequence[HoldOut]
 ) -> Iterator[Line]:
-    from inverse_dynamics.identification.summary import choices_told, error_rows, held_out_rows
+    from inverse_dynamics.identification.summary import choices_told
+    from inverse_dynamics.report.tables import held_out_table
     from inverse_dynamics.verbs.screen import title
-    from inverse_dynamics.verbs.tables import identification_table
+    from inverse_dynamics.verbs.tables import on_screen
 
     yield title(found.robot)
     yield "recordings", ", ".join(map(str, found.recordings))
     yield from choices_told(found)
     yield "note", found.notes
-    yield identification_table(found, held_out_rows(found), "RMSE on held-out blocks")
+    yield on_screen(held_out_table(found, "RMSE on held-out blocks"))
     for test in tests:
-        rows = error_rows(found, test.rmse, test.coverage)
-        yield identification_table(found, rows, f"RMSE on {test.recording}")
+        name = f"RMSE on {test.recording}"
+        yield on_screen(held_out_table(found, name, rmse=test.rmse, coverage=test.coverage))
         yield "note", [f"{test.recording}: {note}" for note in test.notes]
     yield "finding", [finding.text for finding in found.findings]
     yield "robot", f"{files.robot}: `ids evaluate RECORDING --robot {files.robot}`"

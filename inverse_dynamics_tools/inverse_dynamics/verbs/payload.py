@@ -69,6 +69,7 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.report.tables import payload_table, residual_table
     from inverse_dynamics.results.payload import (
         check_payload_output,
         payload_files,
@@ -76,7 +77,7 @@ def run(arguments: argparse.Namespace) -> None:
         write_payload,
     )
     from inverse_dynamics.verbs.screen import heading, progress_bar, show
-    from inverse_dynamics.verbs.tables import payload_table, residual_table
+    from inverse_dynamics.verbs.tables import on_screen
 
     robot = chosen_robot(arguments)
     inputs = (arguments.bag, arguments.empty, arguments.urdf, *robot.files)
@@ -104,8 +105,8 @@ def run(arguments: argparse.Namespace) -> None:
             *heading(payload.evaluation, len(payload.time), payload.estimate.duration),
             ("without load", [payload.empty] if payload.empty else []),
             ("note", payload.notes),
-            payload_table(payload),
-            residual_table(payload),
+            on_screen(payload_table(payload)),
+            on_screen(residual_table(payload)),
             ("written", files),
         ],
     )

@@ -89,9 +89,10 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics._core import RetimeOptions
     from inverse_dynamics.evaluation.evaluation import Arm
     from inverse_dynamics.evaluation.retiming import PER_JOINT, description_limits, retime
+    from inverse_dynamics.report.tables import retime_table
     from inverse_dynamics.results.retimed import PAGE, summary, write_retimed
     from inverse_dynamics.verbs.screen import show, title
-    from inverse_dynamics.verbs.tables import retime_table
+    from inverse_dynamics.verbs.tables import on_screen
 
     given = {name: getattr(arguments, name) for name in PER_JOINT if getattr(arguments, name)}
     limits = description_limits(Arm(robot), robot, **given)
@@ -134,7 +135,7 @@ def run(arguments: argparse.Namespace) -> None:
             ("by acceleration", by_acceleration),
             ("energy", str(result.energy)),
             ("note", result.notes),
-            retime_table(result),
+            on_screen(retime_table(result)),
             ("page", arguments.out / PAGE),
             ("written", arguments.out),
         ],
