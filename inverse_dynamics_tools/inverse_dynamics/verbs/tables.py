@@ -48,7 +48,9 @@ def on_screen(table: ReportTable) -> Table:
     for row in table.rows:
         if table.total and row is table.rows[-1]:
             shown.add_section()
-        shown.add_row(*(rounded(value) if isinstance(value, float) else f"{value}" for value in row))
+        shown.add_row(
+            *(rounded(value) if isinstance(value, float) else f"{value}" for value in row)
+        )
     shown.caption = table.note or None
     return shown
 
