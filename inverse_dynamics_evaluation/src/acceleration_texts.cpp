@@ -20,11 +20,15 @@ std::string seconds(std::int64_t stamp) {
 // How many gaps there are, and the longest.
 std::string gapFinding(const SampleReport& samples, bool filtered) {
   const LongestGap& longest = samples.longest_gap;
+  const std::string place = "no sample for " + formatted("%.3g", longest.length) +
+                            " s after sample " + std::to_string(longest.behind) + " at " +
+                            seconds(longest.stamp_before);
+  if (samples.gaps.empty()) {
+    return place + ", the longest gap" + (filtered ? ": samples around it bridge it" : "");
+  }
   const std::string count = std::to_string(samples.gaps.size());
-  return count + (samples.gaps.size() == 1 ? " gap" : " gaps") +
-         " in the recording: no sample for " + formatted("%.3g", longest.length) +
-         " s after sample " + std::to_string(longest.behind) + " at " +
-         seconds(longest.stamp_before) + (samples.gaps.size() == 1 ? "" : " (the longest)") +
+  return count + (samples.gaps.size() == 1 ? " gap" : " gaps") + " in the recording: " + place +
+         (samples.gaps.size() == 1 ? "" : " (the longest)") +
          (filtered ? "; each side is filtered by itself" : "");
 }
 
@@ -97,7 +101,7 @@ std::vector<std::string> sampleFindings(const std::string& clock, const SampleRe
         "positions and velocities contradict the stamps: samples taken at equal distances "
         "fit them better");
   }
-  if (!samples.gaps.empty()) {
+  if (samples.longest_gap.behind > 0) {
     found.push_back(gapFinding(samples, filter != nullptr));
   }
   if (counts.isolated > 0) {

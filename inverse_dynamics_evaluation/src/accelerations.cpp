@@ -275,7 +275,8 @@ Eigen::Vector4d linearWeights(const Eigen::Vector4d& at, double t) {
 // Goes through the equidistant samples of a piece, which has at least four used samples.
 //
 // A value lies on the cubic through the four samples around its instant, or on a straight line where
-// two of these are so close, or so far apart, that a cubic would enlarge their noise.
+// two of these are so close, or so far apart, that a cubic would enlarge their noise. Across a gap,
+// the outer two of the four are as far from it as it is long, so that noise isn't enlarged.
 class Resampler {
  public:
   Resampler(const SampleTable& table, const Grid& grid)
@@ -290,18 +291,37 @@ class Resampler {
     while (t > instants_[2] && advance()) {
     }
     const Eigen::Vector3d apart = (instants_.tail<3>() - instants_.head<3>()) / grid_.period;
-    weights_ = apart.minCoeff() >= kLeastApart && apart.maxCoeff() <= kMostApart
-                   ? cubicWeights(instants_, t)
-                   : linearWeights(instants_, t);
+    taken_ = samples_;
+    if (apart.minCoeff() >= kLeastApart && apart.maxCoeff() <= kMostApart) {
+      weights_ = cubicWeights(instants_, t);
+    } else if (apart[1] > kMostApart && t > instants_[1] && t < instants_[2] && widen()) {
+      weights_ = cubicWeights(
+          {table_.instant[taken_[0]], instants_[1], instants_[2], table_.instant[taken_[3]]}, t);
+    } else {
+      weights_ = linearWeights(instants_, t);
+    }
   }
 
   // The value there of columns of the table.
   auto valueOf(const SampleTable::JointColumns& columns) const {
-    return weights_[0] * columns.col(samples_[0]) + weights_[1] * columns.col(samples_[1]) +
-           weights_[2] * columns.col(samples_[2]) + weights_[3] * columns.col(samples_[3]);
+    return weights_[0] * columns.col(taken_[0]) + weights_[1] * columns.col(taken_[1]) +
+           weights_[2] * columns.col(taken_[2]) + weights_[3] * columns.col(taken_[3]);
   }
 
  private:
+  // Takes the outer two as far from the middle two as these are apart; not if the piece ends before.
+  bool widen() {
+    const double length = instants_[2] - instants_[1];
+    const auto beyond = [&](Index k, double from) {
+      return table_.used[k] && std::abs(table_.instant[k] - from) >= length;
+    };
+    while (taken_[0] >= grid_.first && !beyond(taken_[0], instants_[1])) --taken_[0];
+    while (taken_[3] < grid_.behind && !beyond(taken_[3], instants_[2])) ++taken_[3];
+    const bool found = taken_[0] >= grid_.first && taken_[3] < grid_.behind;
+    if (!found) taken_ = samples_;
+    return found;
+  }
+
   // Takes one sample further; false at the end of the piece.
   bool advance() {
     while (ahead_ < grid_.behind && !table_.used[ahead_]) ++ahead_;
@@ -318,6 +338,7 @@ class Resampler {
   Index made_ = 0;
   Index ahead_;                         // first sample behind the four
   std::array<Index, 4> samples_{};      // neighbours in the table, all used
+  std::array<Index, 4> taken_{};        // those that are weighed
   Eigen::Vector4d instants_, weights_;  // s; of them
 };
 

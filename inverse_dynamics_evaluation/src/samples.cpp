@@ -28,12 +28,12 @@ using Eigen::VectorXd;
 constexpr double kNanosecond = 1e-9;
 constexpr double kJust = 1 + 1e-9;  // times a limit: rounding doesn't take a distance beyond it
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kGapPeriods = 20.0;    // a gap is longer than this many sampling periods
+constexpr double kGapPeriods = 10.0;    // a gap is longer than this many sampling periods
 constexpr double kClearlyBetter = 0.8;  // of the stamps' disagreement: then another time base
 constexpr double kNotWorse = 1.1;       // of the stamps' disagreement in the long run
 constexpr Index kLongIntervals = 50;    // over how many intervals time bases must agree too
 
-// What is longer than this is a gap [s]: `longest_gap`, or 20 sampling periods if that is more.
+// Where a gap is longer than this [s], the recording is cut.
 double gapFrom(double longest_gap, double period) {
   return std::max(longest_gap, kGapPeriods * period);
 }
@@ -280,23 +280,22 @@ struct Base {
   }
 
   // There is a gap before sample `behind`.
-  void cut(Index behind, double length, std::int64_t stamp_before) {
-    gaps.push_back(behind);
-    if (longest_gap.behind == 0 || length > longest_gap.length) {
-      longest_gap = {behind, length, stamp_before};
-    }
+  void notice(Index behind, double length, std::int64_t stamp_before) {
+    if (length > longest_gap.length) longest_gap = {behind, length, stamp_before};
   }
 
   Timing timing;
   double disagreement = 0, long_disagreement = 0;  // over one interval, over 50
   std::vector<Piece> pieces;
-  std::vector<Index> gaps;  // first samples behind them
+  std::vector<Index> gaps;  // first samples behind those that cut
   LongestGap longest_gap;
 };
 
-// Rule 3, and gaps: what is longer than `gap` [s]. `used`: how many samples have an instant.
-Base tryTimeBase(const SampleTable& table, const Timing& timing, double gap, Index used,
+// Rules 3 and 5. period [s]: mean distance of samples; `used`: how many have an instant.
+Base tryTimeBase(const SampleTable& table, const Timing& timing, double period, Index used,
                  const SampleRules& rules) {
+  const double least = kJust * kGapPeriods * period;
+  const double cut = gapFrom(rules.longest_gap, period);
   Base base;
   base.timing = timing;
   Disagreement one(1, table.q.rows());
@@ -306,7 +305,7 @@ Base tryTimeBase(const SampleTable& table, const Timing& timing, double gap, Ind
   Index before = -1;  // the sample before that has an instant
   forEachOwn(table, rules, timing, [&](Index k, double time) {
     const double distance = time - piece.end;
-    const bool begins = before < 0 || distance > gap;
+    const bool begins = before < 0 || distance > cut;
     if (begins) {
       error.setZero();
     } else {
@@ -317,9 +316,10 @@ Base tryTimeBase(const SampleTable& table, const Timing& timing, double gap, Ind
       one.add(error);
       many.add(error);
     }
+    if (before >= 0 && distance > least) base.notice(k, distance, table.stamps()[k - 1]);
     if (begins && before >= 0) {
       base.end(piece, k, rules.shortest_piece);
-      base.cut(k, distance, table.stamps()[k - 1]);
+      base.gaps.push_back(k);
     }
     if (begins) piece = {k, k, 0, time, time};
     ++piece.used;
@@ -339,9 +339,8 @@ std::vector<Base> tryTimeBases(SampleTable& table, const Census& census, const S
     Timing timing = census.timing;
     timing.base = base;
     const double period = Distances(table, rules, timing).meanPeriod(rules.longest_gap);
-    const double gap = gapFrom(rules.longest_gap, period);
-    bases.push_back(tryTimeBase(
-        table, timing, gap, base == TimeBase::kStamps ? census.used : census.timing.fresh, rules));
+    const Index used = base == TimeBase::kStamps ? census.used : census.timing.fresh;
+    bases.push_back(tryTimeBase(table, timing, period, used, rules));
   }
   return bases;
 }

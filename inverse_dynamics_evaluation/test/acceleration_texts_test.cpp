@@ -93,6 +93,23 @@ TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
 
 TEST(LogAccelerations, SayThatThereIsAGap) {
   JointLog log = sine();
+  const auto lose = [&](Eigen::Index count) {
+    const Eigen::Index left = log.q.cols() - 700 - count;
+    for (Eigen::MatrixXd* numbers : {&log.q, &log.qd, &log.effort}) {
+      numbers->middleCols(700, left) = numbers->rightCols(left).eval();
+      numbers->conservativeResize(Eigen::NoChange, 700 + left);
+    }
+    log.header_stamps.segment(700, left) = log.header_stamps.tail(left).eval();
+    log.header_stamps.conservativeResize(700 + left);
+    log.receive_stamps = log.header_stamps;
+  };
+  lose(3);
+  EXPECT_THAT(logAccelerations(log).findings, Not(Contains(HasSubstr("gap"))));
+  lose(11);
+  EXPECT_THAT(logAccelerations(log).findings,
+              Contains("no sample for 0.15 s after sample 700 at 6.990000000 s, the longest gap: "
+                       "samples around it bridge it"));
+  log = sine();
   log.header_stamps.tail(300).array() += 10'000'000'000;
   EXPECT_THAT(logAccelerations(log).findings,
               Contains("1 gap in the recording: no sample for 10 s after sample 700 at 6.990000000 "

@@ -62,6 +62,20 @@ LowPassOptions cutoffOf(double cutoff) {
   return options;
 }
 
+// The motion of which those samples were lost.
+template <class Lost>
+Motion without(const Motion& motion, Lost lost) {
+  std::vector<Eigen::Index> samples;
+  std::vector<double> time;
+  for (Eigen::Index k = 0; k < motion.count(); ++k) {
+    if (lost(k)) continue;
+    samples.push_back(k);
+    time.push_back(motion.time[k]);
+  }
+  return pick(motion, samples,
+              Eigen::Map<Eigen::VectorXd>(time.data(), static_cast<Eigen::Index>(time.size())));
+}
+
 TEST(BackwardDifference, IsTheOneWorkedByHand) {
   Eigen::VectorXd time(5);
   time << 0.0, 0.5, 0.5, 0.25, 1.25;  // an equal stamp, a backward one
@@ -282,17 +296,7 @@ TEST(LowPassAccelerations, DoNotSufferFromLostSamplesOfFastMotion) {
   // 5 Hz at 125 Hz: a straight line over a lost sample would miss 6 % of the velocity
   Motion clean = sines(125.0, 10.0, {5.0, 4.0});
   addVelocityNoise(clean, 3e-4, 1);
-  std::vector<Eigen::Index> samples;
-  for (Eigen::Index k = 0; k < clean.count(); ++k) {
-    if (k % 10 != 5) {
-      samples.push_back(k);
-    }
-  }
-  Eigen::VectorXd time(static_cast<Eigen::Index>(samples.size()));
-  for (Eigen::Index i = 0; i < time.size(); ++i) {
-    time[i] = clean.time[samples[static_cast<std::size_t>(i)]];
-  }
-  const Motion motion = pick(clean, samples, time);
+  const Motion motion = without(clean, [](Eigen::Index k) { return k % 10 == 5; });
   EXPECT_LT(rms(estimate(motion).qdd, motion.qdd), 1.2 * rms(estimate(clean).qdd, clean.qdd));
 }
 
@@ -300,19 +304,23 @@ TEST(LowPassAccelerations, DoNotEnlargeNoiseAcrossHoles) {
   // 60 samples lost in a row: a cubic's slopes would be those of two noisy samples
   Motion clean = sines(1000.0, 20.0, {0.5, 1.0});
   addVelocityNoise(clean, 5e-3, 1);
-  std::vector<Eigen::Index> samples;
-  for (Eigen::Index k = 0; k < clean.count(); ++k) {
-    if (k % 1500 < 1440) {
-      samples.push_back(k);
-    }
-  }
-  Eigen::VectorXd time(static_cast<Eigen::Index>(samples.size()));
-  for (Eigen::Index i = 0; i < time.size(); ++i) {
-    time[i] = clean.time[samples[static_cast<std::size_t>(i)]];
-  }
-  const Motion motion = pick(clean, samples, time);
+  const Motion motion = without(clean, [](Eigen::Index k) { return k % 1500 >= 1440; });
   EXPECT_LT(rms(estimate(motion, cutoffOf(8.0)).qdd, motion.qdd),
             3.0 * rms(estimate(clean, cutoffOf(8.0)).qdd, clean.qdd));
+}
+
+TEST(LowPassAccelerations, HaveTheSameCutOffWithAndWithoutShortGaps) {
+  // straight lines over these gaps would have corners that halve the cut-off
+  Motion clean = sines(125.0, 30.0, {0.5, 1.0});
+  addVelocityNoise(clean, 1e-3, 1);
+  const LogAccelerations whole = estimate(clean);
+  for (const Eigen::Index lost : {1, 3, 10}) {
+    const Motion motion = without(clean, [&](Eigen::Index k) { return k % 400 >= 400 - lost; });
+    const LogAccelerations result = estimate(motion);
+    EXPECT_EQ(result.filter.pieces, 1);
+    EXPECT_NEAR(result.filter.cutoff, whole.filter.cutoff, 0.1 * whole.filter.cutoff) << lost;
+    EXPECT_LT(rms(result.qdd, motion.qdd), 1.2 * rms(whole.qdd, clean.qdd)) << lost;
+  }
 }
 
 TEST(LowPassAccelerations, DoNotMultiplySamplesThatComeInBursts) {

@@ -120,8 +120,8 @@ struct AccelerationReport {
 /// Fills accelerations, instants and flags of a table. O(N log N).
 ///
 /// kLowPass: the used samples of examineSamples() are interpolated to equidistant ones at the median
-/// sampling period (at least half of the mean one), by cubics through four neighbours or, where two
-/// of these are closer than half a period or more than three apart, by a straight line; low-passed,
+/// sampling period (at least half of the mean one), by cubics through four neighbours (across holes,
+/// wider ones) or, where two of these are closer than half a period, by a straight line; low-passed,
 /// differentiated, and interpolated back to the instants of all N samples. A sample that wasn't used
 /// gets the acceleration of its instant.
 ///

@@ -31,9 +31,10 @@
 ///    up to the last sample in the first half second that exceeds 5 times the 90 % quantile of the
 ///    first 65,536 samples doesn't count in the metrics over kept samples. Such samples are used in
 ///    the differentiation.
-/// 5. **Gaps.** Where nothing was recorded for more than half a second and 20 sampling periods, the
-///    recording is cut, and each piece filtered by itself. Pieces too short to be filtered don't
-///    count.
+/// 5. **Gaps.** Nothing was recorded for more than 10 sampling periods. Up to a quarter of a second,
+///    in which an arm's motion hardly bends more than the cubic of findAccelerations(), they are
+///    bridged; at longer ones the recording is cut, and each piece filtered by itself. Pieces too
+///    short to be filtered don't count.
 ///
 /// Metrics over all samples need none of this: every sample has an acceleration. One that is left
 /// out of the differentiation gets that of its instant.
@@ -58,7 +59,7 @@ struct SampleRules {
   bool time_base = true;        ///< replace stamps that q and qd contradict
   bool start_transient = true;  ///< don't count the start transient in metrics over kept samples
   double start_window = 0.5;    ///< where a start transient is looked for [s]
-  double longest_gap = 0.5;     ///< what may be bridged [s], or 20 sampling periods if longer
+  double longest_gap = 0.25;    ///< what may be bridged [s], or 10 sampling periods if longer
   Eigen::Index shortest_piece = 10;  ///< samples a piece between gaps must have
 };
 
@@ -91,7 +92,7 @@ struct BackwardStamp {
   double time_before = 0;   ///< s; of the sample before it
 };
 
-/// The longest gap.
+/// The longest gap, bridged or not.
 struct LongestGap {
   Eigen::Index behind = 0;        ///< number of the first used sample behind it; 0: there is none
   double length = 0;              ///< s
@@ -120,7 +121,7 @@ struct SampleReport {
   SampleCounts counts;
   TimeBase time_base = TimeBase::kStamps;  ///< which one is used
   std::vector<Piece> pieces;               ///< of `shortest_piece` used samples or more
-  std::vector<Eigen::Index> gaps;          ///< first used sample behind each gap (rule 5)
+  std::vector<Eigen::Index> gaps;          ///< first used sample behind each gap that cuts (rule 5)
   LongestGap longest_gap;
   BackwardStamp backward;
   LoneSample lone;
