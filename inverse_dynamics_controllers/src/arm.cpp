@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "changing_damping.hpp"
-#include "joint_numbers.hpp"
 
 namespace inverse_dynamics_controllers {
 
 using chain_dynamics::joined;
 using inverse_dynamics_control::FrictionSource;
+using inverse_dynamics_control::jointNumbers;
 using inverse_dynamics_control::LawOptions;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
@@ -100,7 +100,8 @@ Setup ArmSource::setup(const std::string& managers_description, unsigned update_
   return {node_,
           parameters,
           law,
-          {solver, joints, std::move(commands), urdfLimits(description, joints)},
+          {solver, joints, std::move(commands),
+           inverse_dynamics_control::describedLimits(description, joints)},
           update_rate};
 }
 
@@ -137,8 +138,7 @@ LawOptions lawOptions(const Setup& setup, const std::string& friction_source) {
         "limits of effort [N m], here or in the robot description", "neither for all joints",
         "set it; .inf where the robot limits its effort by itself"));
   }
-  options.limits.rate =
-      jointNumbers("limits.effort_rate", law.limits.effort_rate, arm.joints, Eigen::VectorXd());
+  options.limits.rate = jointNumbers("limits.effort_rate", law.limits.effort_rate, arm.joints, {});
   options.damping = changingDamping(setup).initial();
   return options;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <inverse_dynamics_control/control_law.hpp>
+#include <inverse_dynamics_control/joint_parameters.hpp>
 #include <inverse_dynamics_controllers/arm_parameters.hpp>
 #include <inverse_dynamics_controllers/law_parameters.hpp>
 #include <memory>
@@ -12,7 +13,6 @@
 #include <vector>
 
 #include "robot_description.hpp"
-#include "urdf_limits.hpp"
 
 namespace inverse_dynamics_controllers {
 
@@ -27,7 +27,7 @@ struct Arm {
   std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver> solver;
   std::vector<std::string> joints;    ///< names of the hardware, in the order of the chain
   std::vector<std::string> commands;  ///< full names of the command interfaces, in the same order
-  UrdfLimits limits;
+  inverse_dynamics_control::DescribedLimits limits;
 };
 
 /// All that a controller is configured from.

@@ -53,10 +53,7 @@ ArmInterfaces::ArmInterfaces(std::vector<std::string> joints, std::vector<std::s
     : joints_(std::move(joints)), commands_(std::move(commands)) {}
 
 controller_interface::InterfaceConfiguration ArmInterfaces::states() const {
-  return {kIndividual, namesOf(joints_, {HW_IF_POSITION, HW_IF_VELOCITY})};
-}
-
-controller_interface::InterfaceConfiguration ArmInterfaces::statesWithEffort() const {
+  if (!commands_.empty()) return {kIndividual, namesOf(joints_, {HW_IF_POSITION, HW_IF_VELOCITY})};
   return {kIndividual, namesOf(joints_, {HW_IF_POSITION, HW_IF_VELOCITY, HW_IF_EFFORT})};
 }
 
@@ -67,13 +64,8 @@ controller_interface::InterfaceConfiguration ArmInterfaces::commands() const {
 void ArmInterfaces::bind(const StateInterfaces& states, const CommandInterfaces& commands) {
   positions_ = find(states, namesOf(joints_, {HW_IF_POSITION}), kState);
   velocities_ = find(states, namesOf(joints_, {HW_IF_VELOCITY}), kState);
-  efforts_ = find(commands, commands_, "command interface");
-}
-
-void ArmInterfaces::bindMeasured(const StateInterfaces& states) {
-  positions_ = find(states, namesOf(joints_, {HW_IF_POSITION}), kState);
-  velocities_ = find(states, namesOf(joints_, {HW_IF_VELOCITY}), kState);
-  measured_efforts_ = find(states, namesOf(joints_, {HW_IF_EFFORT}), kState);
+  efforts_ = commands_.empty() ? find(states, namesOf(joints_, {HW_IF_EFFORT}), kState)
+                               : find(commands, commands_, "command interface");
 }
 
 void ArmInterfaces::read(const StateInterfaces& states,
@@ -87,8 +79,8 @@ void ArmInterfaces::read(const StateInterfaces& states,
 
 void ArmInterfaces::readEffort(const StateInterfaces& states,
                                Eigen::VectorXd& effort) const noexcept {
-  for (std::size_t j = 0; j < measured_efforts_.size(); ++j) {
-    effort[static_cast<Eigen::Index>(j)] = valueOf(states[measured_efforts_[j]]);
+  for (std::size_t j = 0; j < efforts_.size(); ++j) {
+    effort[static_cast<Eigen::Index>(j)] = valueOf(states[efforts_[j]]);
   }
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// A controller's interfaces to the hardware, a position, a velocity and an effort per joint.
-///
-/// What measures only takes the efforts as states: statesWithEffort(), bindMeasured(), readEffort().
 #pragma once
 
 #include <Eigen/Core>
@@ -20,16 +18,13 @@ using StateInterfaces = std::vector<hardware_interface::LoanedStateInterface>;
 class ArmInterfaces {
  public:
   /// @param joints    of the states.
-  /// @param commands  full names of the command interfaces, as many; none: nothing is commanded.
+  /// @param commands  full names of the command interfaces, as many; none: efforts are measured.
   explicit ArmInterfaces(std::vector<std::string> joints, std::vector<std::string> commands = {});
 
   const std::vector<std::string>& joints() const noexcept { return joints_; }
 
-  /// `joint/position` and `joint/velocity` of all joints.
+  /// `joint/position`, `joint/velocity` and, where it is measured, `joint/effort` of all joints.
   controller_interface::InterfaceConfiguration states() const;
-
-  /// The same, and `joint/effort` of all joints.
-  controller_interface::InterfaceConfiguration statesWithEffort() const;
 
   controller_interface::InterfaceConfiguration commands() const;
 
@@ -37,9 +32,6 @@ class ArmInterfaces {
   ///
   /// Throws inverse_dynamics_solver::Exception: one is missing.
   void bind(const StateInterfaces& states, const CommandInterfaces& commands);
-
-  /// The same for statesWithEffort().
-  void bindMeasured(const StateInterfaces& states);
 
   /// Measured state; NaN where a value can't be read. Real time: no allocation, exception or system
   /// call.
@@ -61,7 +53,6 @@ class ArmInterfaces {
  private:
   std::vector<std::string> joints_, commands_;
   std::vector<std::size_t> positions_, velocities_, efforts_;  // where they are
-  std::vector<std::size_t> measured_efforts_;
 };
 
 }  // namespace inverse_dynamics_controllers

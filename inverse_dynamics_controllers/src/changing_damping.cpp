@@ -7,11 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "joint_numbers.hpp"
-
 namespace inverse_dynamics_controllers {
 namespace {
 
+using inverse_dynamics_control::jointNumbers;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::ParameterUninitializedException;

@@ -6,7 +6,6 @@
 
 #include "arm.hpp"
 #include "control_loop.hpp"
-#include "joint_numbers.hpp"
 #include "wrench_publisher.hpp"
 #include "wrench_report.hpp"
 
@@ -17,6 +16,7 @@ using controller_interface::return_type;
 using inverse_dynamics_control::ContactOptions;
 using inverse_dynamics_control::EstimateStatus;
 using inverse_dynamics_control::Estimator;
+using inverse_dynamics_control::jointNumbers;
 using inverse_dynamics_control::VelocitySource;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
@@ -60,7 +60,6 @@ std::string frameOf(const Setup& setup, const Parameters& params) {
 
 ContactOptions optionsOf(const Setup& setup, const Parameters& params) {
   const std::vector<std::string>& joints = setup.arm.joints;
-  const Eigen::VectorXd none;
   requireNoise(params.noise);
   requireShortPeriod(setup.period(), params.longest_period);
   ContactOptions options;
@@ -70,13 +69,12 @@ ContactOptions optionsOf(const Setup& setup, const Parameters& params) {
       params.velocity == "measured" ? VelocitySource::kMeasured : VelocitySource::kPositions;
   options.estimator.tracking = params.tracking;
   options.estimator.compensated = compensatedByRobot(setup);
-  options.estimator.friction_band =
-      jointNumbers("friction_band", params.friction_band, joints, none);
+  options.estimator.friction_band = jointNumbers("friction_band", params.friction_band, joints, {});
   options.estimator.longest_period = params.longest_period;
   options.wrench.noise = jointNumbers("noise", params.noise, joints);
   options.wrench.force = params.expected.force;
   options.wrench.torque = params.expected.torque;
-  options.thresholds = jointNumbers("contact.thresholds", params.contact.thresholds, joints, none);
+  options.thresholds = jointNumbers("contact.thresholds", params.contact.thresholds, joints, {});
   options.release = {params.contact.release_share, params.contact.release_time};
   return options;
 }
@@ -98,7 +96,7 @@ struct ExternalWrenchBroadcaster::Configured {
                   setup.parameters.state_publish_rate, sensing.detector() != nullptr) {}
 
   void start(const StateInterfaces& states) {
-    interfaces.bindMeasured(states);
+    interfaces.bind(states, {});
     sensing.reset();
     faulty = 0.0;
     given_up = false;
@@ -137,7 +135,7 @@ ExternalWrenchBroadcaster::command_interface_configuration() const {
 
 controller_interface::InterfaceConfiguration
 ExternalWrenchBroadcaster::state_interface_configuration() const {
-  return configured_ ? configured_->interfaces.statesWithEffort() : nothing();
+  return configured_ ? configured_->interfaces.states() : nothing();
 }
 
 CallbackReturn ExternalWrenchBroadcaster::on_init() {

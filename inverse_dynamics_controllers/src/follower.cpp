@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "follower.hpp"
 
-#include "joint_numbers.hpp"
-
 namespace inverse_dynamics_controllers {
 
+using inverse_dynamics_control::jointNumbers;
 using inverse_dynamics_control::ReferenceGuard;
 using inverse_dynamics_control::ReferenceLimits;
 

@@ -6,12 +6,12 @@
 #include <sstream>
 
 #include "follower.hpp"
-#include "joint_numbers.hpp"
 
 namespace inverse_dynamics_controllers {
 
 using inverse_dynamics_control::ComputedTorque;
 using inverse_dynamics_control::Gains;
+using inverse_dynamics_control::jointNumbers;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 
