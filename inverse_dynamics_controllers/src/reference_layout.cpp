@@ -13,17 +13,14 @@ using chain_dynamics::joined;
 ReferenceLayout::ReferenceLayout(const std::vector<std::string>& interfaces,
                                  const std::vector<std::string>& joints)
     : joints_(joints.size()), stride_(interfaces.size()) {
-  const auto offset = [&interfaces](const char* name) {
-    const auto found = std::find(interfaces.begin(), interfaces.end(), name);
-    return found == interfaces.end() ? -1 : static_cast<int>(found - interfaces.begin());
-  };
-  position_ = offset("position");
-  velocity_ = offset("velocity");
-  acceleration_ = offset("acceleration");
-  effort_ = offset("effort");
-  const bool motion = position_ >= 0 && velocity_ >= 0;
-  const bool part = position_ >= 0 || velocity_ >= 0 || acceleration_ >= 0;
-  if (motion != part || (!motion && effort_ < 0)) {
+  const std::array<const char*, 4> known = {"position", "velocity", "acceleration", "effort"};
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const auto found = std::find(interfaces.begin(), interfaces.end(), known[k]);
+    if (found != interfaces.end()) places_[k] = static_cast<int>(found - interfaces.begin());
+  }
+  const bool motion = has(kPosition) && has(kVelocity);
+  const bool part = has(kPosition) || has(kVelocity) || has(kAcceleration);
+  if (motion != part || (!motion && !hasEffort())) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
         inverse_dynamics_solver::errorText("parameter 'reference_interfaces'", "not a motion",
                                            "position and velocity, acceleration only beside them",
@@ -35,67 +32,38 @@ ReferenceLayout::ReferenceLayout(const std::vector<std::string>& interfaces,
   }
 }
 
-double ReferenceLayout::at(const std::vector<double>& values, Eigen::Index j,
-                           int offset) const noexcept {
-  return values[static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(offset)];
-}
-
-void ReferenceLayout::set(std::size_t j, int offset, double value,
-                          std::vector<double>& values) const noexcept {
-  if (offset >= 0) values[j * stride_ + static_cast<std::size_t>(offset)] = value;
-}
-
-bool ReferenceLayout::isUntouched(const std::vector<double>& values, int offset) const noexcept {
-  if (offset < 0) return true;
-  for (std::size_t j = 0; j < joints_; ++j) {
-    if (!std::isnan(values[j * stride_ + static_cast<std::size_t>(offset)])) return false;
+bool ReferenceLayout::isUntouched(const std::vector<double>& values,
+                                  Interface interface) const noexcept {
+  for (std::size_t j = 0; has(interface) && j < joints_; ++j) {
+    if (!std::isnan(values[place(interface, j)])) return false;
   }
   return true;
 }
 
 bool ReferenceLayout::motionIsUntouched(const std::vector<double>& values) const noexcept {
-  return isUntouched(values, position_) && isUntouched(values, velocity_) &&
-         isUntouched(values, acceleration_);
+  return isUntouched(values, kPosition) && isUntouched(values, kVelocity) &&
+         isUntouched(values, kAcceleration);
 }
 
 bool ReferenceLayout::effortIsUntouched(const std::vector<double>& values) const noexcept {
-  return isUntouched(values, effort_);
+  return isUntouched(values, kEffort);
 }
 
 void ReferenceLayout::readMotion(const std::vector<double>& values,
                                  inverse_dynamics_control::Reference& reference) const noexcept {
-  for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(joints_); ++j) {
-    reference.q[j] = at(values, j, position_);
-    reference.qd[j] = at(values, j, velocity_);
-    reference.qdd[j] = hasAcceleration() ? at(values, j, acceleration_) : 0.0;
+  for (std::size_t j = 0; j < joints_; ++j) {
+    const auto row = static_cast<Eigen::Index>(j);
+    reference.q[row] = values[place(kPosition, j)];
+    reference.qd[row] = values[place(kVelocity, j)];
+    reference.qdd[row] = has(kAcceleration) ? values[place(kAcceleration, j)] : 0.0;
   }
 }
 
 void ReferenceLayout::readEffort(const std::vector<double>& values,
                                  Eigen::VectorXd& effort) const noexcept {
-  for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(joints_); ++j) {
-    effort[j] = at(values, j, effort_);
+  for (std::size_t j = 0; j < joints_; ++j) {
+    effort[static_cast<Eigen::Index>(j)] = values[place(kEffort, j)];
   }
-}
-
-void ReferenceLayout::setPosition(std::size_t j, double q,
-                                  std::vector<double>& values) const noexcept {
-  set(j, position_, q, values);
-}
-
-void ReferenceLayout::setVelocity(std::size_t j, double qd,
-                                  std::vector<double>& values) const noexcept {
-  set(j, velocity_, qd, values);
-}
-
-void ReferenceLayout::setAcceleration(std::size_t j, double qdd,
-                                      std::vector<double>& values) const noexcept {
-  set(j, acceleration_, qdd, values);
-}
-
-void ReferenceLayout::setEffort(std::size_t j, double effort,
-                                std::vector<double>& values) const noexcept {
-  set(j, effort_, effort, values);
 }
 
 }  // namespace inverse_dynamics_controllers

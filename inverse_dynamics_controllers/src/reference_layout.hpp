@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <inverse_dynamics_control/signals.hpp>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@ namespace inverse_dynamics_controllers {
 /// The order of a controller's references: joint by joint, interface by interface.
 class ReferenceLayout {
  public:
+  enum Interface { kPosition, kVelocity, kAcceleration, kEffort };
+
   ReferenceLayout() = default;
 
   /// @param interfaces  position and velocity, with acceleration or without; effort; or both.
@@ -24,9 +27,8 @@ class ReferenceLayout {
   const std::vector<std::string>& names() const noexcept { return names_; }
   std::size_t size() const noexcept { return names_.size(); }
 
-  bool hasMotion() const noexcept { return position_ >= 0; }
-  bool hasAcceleration() const noexcept { return acceleration_ >= 0; }
-  bool hasEffort() const noexcept { return effort_ >= 0; }
+  bool hasMotion() const noexcept { return has(kPosition); }
+  bool hasEffort() const noexcept { return has(kEffort); }
 
   /// Whether no motion, or no effort, has been written since all numbers were NaN.
   /// Real time, as all that follow: no allocation, lock, exception or system call.
@@ -40,21 +42,22 @@ class ReferenceLayout {
   /// Effort of the references [N m].
   void readEffort(const std::vector<double>& values, Eigen::VectorXd& effort) const noexcept;
 
-  /// Puts a number of joint j into place: position, velocity, acceleration or effort, if it is
-  /// among the references.
-  void setPosition(std::size_t j, double q, std::vector<double>& values) const noexcept;
-  void setVelocity(std::size_t j, double qd, std::vector<double>& values) const noexcept;
-  void setAcceleration(std::size_t j, double qdd, std::vector<double>& values) const noexcept;
-  void setEffort(std::size_t j, double effort, std::vector<double>& values) const noexcept;
+  /// Puts a number of joint j into place, if it is among the references.
+  void set(Interface interface, std::size_t j, double number,
+           std::vector<double>& values) const noexcept {
+    if (has(interface)) values[place(interface, j)] = number;
+  }
 
  private:
-  double at(const std::vector<double>& values, Eigen::Index j, int offset) const noexcept;
-  void set(std::size_t j, int offset, double value, std::vector<double>& values) const noexcept;
-  bool isUntouched(const std::vector<double>& values, int offset) const noexcept;
+  bool has(Interface interface) const noexcept { return places_[interface] >= 0; }
+  std::size_t place(Interface interface, std::size_t j) const noexcept {
+    return j * stride_ + static_cast<std::size_t>(places_[interface]);
+  }
+  bool isUntouched(const std::vector<double>& values, Interface interface) const noexcept;
 
   std::vector<std::string> names_;
   std::size_t joints_ = 0, stride_ = 0;
-  int position_ = -1, velocity_ = -1, acceleration_ = -1, effort_ = -1;  // among a joint's, or -1
+  std::array<int, 4> places_{-1, -1, -1, -1};  // of each interface among a joint's; -1: none
 };
 
 }  // namespace inverse_dynamics_controllers

@@ -70,11 +70,12 @@ std::string referencesOf(const JointTrajectory& message, const ReferenceLayout& 
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const std::size_t k = places[j];
     if (layout.hasMotion()) {
-      layout.setPosition(j, point.positions[k], values);
-      layout.setVelocity(j, point.velocities[k], values);
-      layout.setAcceleration(j, point.accelerations.empty() ? 0.0 : point.accelerations[k], values);
+      layout.set(ReferenceLayout::kPosition, j, point.positions[k], values);
+      layout.set(ReferenceLayout::kVelocity, j, point.velocities[k], values);
+      layout.set(ReferenceLayout::kAcceleration, j,
+                 point.accelerations.empty() ? 0.0 : point.accelerations[k], values);
     }
-    layout.setEffort(j, point.effort.empty() ? 0.0 : point.effort[k], values);
+    layout.set(ReferenceLayout::kEffort, j, point.effort.empty() ? 0.0 : point.effort[k], values);
   }
   return "";
 }

@@ -3,12 +3,16 @@
 /// Sentences for the log, written by another thread than the control loop, which may not log.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 #include <string>
 
 namespace inverse_dynamics_controllers {
+
+/// What the control loop counts needs no order.
+constexpr auto kRelaxed = std::memory_order_relaxed;
 
 /// A sentence for the log.
 struct ReportLine {

@@ -13,8 +13,6 @@ using inverse_dynamics_control::StopReason;
 
 namespace {
 
-constexpr auto kRelaxed = std::memory_order_relaxed;
-
 std::uint64_t maskOf(const UpdateReport::Joints& joints) noexcept {
   std::uint64_t mask = 0;
   for (Eigen::Index j = 0; j < std::min<Eigen::Index>(joints.size(), 64); ++j) {

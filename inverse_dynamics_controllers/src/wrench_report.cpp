@@ -7,12 +7,6 @@ namespace inverse_dynamics_controllers {
 
 using inverse_dynamics_control::EstimateStatus;
 
-namespace {
-
-constexpr auto kRelaxed = std::memory_order_relaxed;
-
-}  // namespace
-
 void WrenchReport::note(EstimateStatus status, Eigen::Index unseen) noexcept {
   cycles_[static_cast<std::size_t>(status)].fetch_add(1, kRelaxed);
   if (status != EstimateStatus::kOk || unseen <= blind_) return;

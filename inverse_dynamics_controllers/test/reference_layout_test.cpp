@@ -33,10 +33,10 @@ TEST(ReferenceLayout, UntouchedIsWhatIsNanAltogether) {
   std::vector<double> values(6, kNan);
   EXPECT_TRUE(layout.motionIsUntouched(values));
   EXPECT_TRUE(layout.effortIsUntouched(values));
-  layout.setEffort(1, 0.0, values);
+  layout.set(ReferenceLayout::kEffort, 1, 0.0, values);
   EXPECT_TRUE(layout.motionIsUntouched(values));
   EXPECT_FALSE(layout.effortIsUntouched(values));
-  layout.setVelocity(0, 0.0, values);
+  layout.set(ReferenceLayout::kVelocity, 0, 0.0, values);
   EXPECT_FALSE(layout.motionIsUntouched(values));
 }
 
