@@ -79,22 +79,17 @@ class FeedForwardFollower : public Follower {
 
 }  // namespace
 
-FeedForwardController::FeedForwardController() = default;
-FeedForwardController::~FeedForwardController() = default;
-
-void FeedForwardController::declareParameters() {
-  parameters_ = std::make_shared<feed_forward_controller::ParamListener>(get_node());
-}
-
-std::unique_ptr<Follower> FeedForwardController::makeFollower(
-    const Setup& setup, const reference_parameters::Params& references) {
-  const auto params = parameters_->get_params();
-  const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
-  const LawOptions options = lawOptions(setup, params.friction.source);
-  requireReferenceVelocity(options, layout);
-  return std::make_unique<FeedForwardFollower>(
-      setup, referenceInput(setup, layout, references), pdGains(setup),
-      FeedForward(setup.arm.solver, modelState(params, layout), options));
+FollowingController::MakeFollower FeedForwardController::declareParameters() {
+  const auto parameters = std::make_shared<feed_forward_controller::ParamListener>(get_node());
+  return [parameters](const Setup& setup, const reference_parameters::Params& references) {
+    const auto params = parameters->get_params();
+    const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
+    const LawOptions options = lawOptions(setup, params.friction.source);
+    requireReferenceVelocity(options, layout);
+    return std::make_unique<FeedForwardFollower>(
+        setup, referenceInput(setup, layout, references), pdGains(setup),
+        FeedForward(setup.arm.solver, modelState(params, layout), options));
+  };
 }
 
 }  // namespace inverse_dynamics_controllers

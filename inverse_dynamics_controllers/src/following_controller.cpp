@@ -27,14 +27,14 @@ CallbackReturn FollowingController::on_init() {
   return transition(get_node()->get_logger(), [this] {
     arm_source_ = std::make_unique<ArmSource>(get_node(), ArmSource::Use::kCommand);
     reference_parameters_ = std::make_shared<reference_parameters::ParamListener>(get_node());
-    declareParameters();
+    make_follower_ = declareParameters();
   });
 }
 
 CallbackReturn FollowingController::on_configure(const rclcpp_lifecycle::State&) {
   return transition(get_node()->get_logger(), [this] {
-    follower_ = makeFollower(arm_source_->setup(robotDescriptionOf(*this), get_update_rate()),
-                             reference_parameters_->get_params());
+    follower_ = make_follower_(arm_source_->setup(robotDescriptionOf(*this), get_update_rate()),
+                               reference_parameters_->get_params());
     references_.assign(referenceNames().size(), std::numeric_limits<double>::quiet_NaN());
   });
 }

@@ -58,27 +58,23 @@ Gains gainsOf(const std::vector<double>& natural_frequency,
 
 }  // namespace
 
-InverseDynamicsController::InverseDynamicsController() = default;
-InverseDynamicsController::~InverseDynamicsController() = default;
-
-void InverseDynamicsController::declareParameters() {
-  parameters_ = std::make_shared<inverse_dynamics_controller::ParamListener>(get_node());
-}
-
-std::unique_ptr<Follower> InverseDynamicsController::makeFollower(
-    const Setup& setup, const reference_parameters::Params& references) {
-  const auto params = parameters_->get_params();
-  requirePhysicalInertia(setup);
-  const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
-  const auto make = [T = setup.period(), joints = setup.arm.joints](const ParameterValues& values) {
-    using Numbers = std::vector<double>;
-    return gainsOf(values.at("gains.natural_frequency").get<Numbers>(),
-                   values.at("gains.damping_ratio").get<Numbers>(), T, joints);
+FollowingController::MakeFollower InverseDynamicsController::declareParameters() {
+  const auto parameters = std::make_shared<inverse_dynamics_controller::ParamListener>(get_node());
+  return [parameters](const Setup& setup, const reference_parameters::Params& references) {
+    const auto params = parameters->get_params();
+    requirePhysicalInertia(setup);
+    const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
+    const auto make = [T = setup.period(),
+                       joints = setup.arm.joints](const ParameterValues& values) {
+      using Numbers = std::vector<double>;
+      return gainsOf(values.at("gains.natural_frequency").get<Numbers>(),
+                     values.at("gains.damping_ratio").get<Numbers>(), T, joints);
+    };
+    return std::make_unique<FollowerWithGains<ComputedTorque, Gains>>(
+        setup, referenceInput(setup, layout, references),
+        ChangingGains<Gains>(setup.node, {"gains.natural_frequency", "gains.damping_ratio"}, make),
+        lawOptions(setup, params.friction.source));
   };
-  return std::make_unique<FollowerWithGains<ComputedTorque, Gains>>(
-      setup, referenceInput(setup, layout, references),
-      ChangingGains<Gains>(setup.node, {"gains.natural_frequency", "gains.damping_ratio"}, make),
-      lawOptions(setup, params.friction.source));
 }
 
 }  // namespace inverse_dynamics_controllers

@@ -11,20 +11,16 @@ namespace inverse_dynamics_controllers {
 using inverse_dynamics_control::PdGains;
 using inverse_dynamics_control::PdGravityCompensation;
 
-PdGravityCompensationController::PdGravityCompensationController() = default;
-PdGravityCompensationController::~PdGravityCompensationController() = default;
-
-void PdGravityCompensationController::declareParameters() {
-  parameters_ = std::make_shared<pd_gravity_compensation_controller::ParamListener>(get_node());
-}
-
-std::unique_ptr<Follower> PdGravityCompensationController::makeFollower(
-    const Setup& setup, const reference_parameters::Params& references) {
-  const auto params = parameters_->get_params();
-  const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
-  return std::make_unique<FollowerWithGains<PdGravityCompensation, PdGains>>(
-      setup, referenceInput(setup, layout, references), pdGains(setup),
-      lawOptions(setup, params.friction.source));
+FollowingController::MakeFollower PdGravityCompensationController::declareParameters() {
+  const auto parameters =
+      std::make_shared<pd_gravity_compensation_controller::ParamListener>(get_node());
+  return [parameters](const Setup& setup, const reference_parameters::Params& references) {
+    const auto params = parameters->get_params();
+    const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
+    return std::make_unique<FollowerWithGains<PdGravityCompensation, PdGains>>(
+        setup, referenceInput(setup, layout, references), pdGains(setup),
+        lawOptions(setup, params.friction.source));
+  };
 }
 
 }  // namespace inverse_dynamics_controllers

@@ -9,13 +9,7 @@
 /// docs/ros2_controllers.md has the parameters, tuning, and what is promised.
 #pragma once
 
-#include <memory>
-
 #include "inverse_dynamics_controllers/following_controller.hpp"
-
-namespace feed_forward_controller {
-class ParamListener;
-}
 
 namespace inverse_dynamics_controllers {
 
@@ -23,17 +17,8 @@ namespace inverse_dynamics_controllers {
 ///
 /// Real time: update(): no allocation, lock, exception or system call of its own.
 class FeedForwardController : public FollowingController {
- public:
-  FeedForwardController();
-  ~FeedForwardController() override;
-
  protected:
-  void declareParameters() override;
-  std::unique_ptr<Follower> makeFollower(const Setup& setup,
-                                         const reference_parameters::Params& references) override;
-
- private:
-  std::shared_ptr<feed_forward_controller::ParamListener> parameters_;
+  MakeFollower declareParameters() override;
 };
 
 }  // namespace inverse_dynamics_controllers

@@ -3,11 +3,11 @@
 /// What the controllers that follow references have in common: all but their law.
 ///
 ///     class MyController : public FollowingController {
-///       void declareParameters() override;                     // its own
-///       std::unique_ptr<Follower> makeFollower() override;     // law and references from them
+///       MakeFollower declareParameters() override;   // its own; what makes law and references of them
 ///     };
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -45,12 +45,12 @@ class FollowingController : public ChainableController {
   controller_interface::CallbackReturn on_shutdown(const rclcpp_lifecycle::State& state) override;
 
  protected:
-  /// Declares the parameters that the controller has of its own.
-  virtual void declareParameters() = 0;
+  /// All that a configuration makes. What it throws fails that transition.
+  using MakeFollower =
+      std::function<std::unique_ptr<Follower>(const Setup&, const reference_parameters::Params&)>;
 
-  /// All that a configuration makes; called when configured. What it throws fails that transition.
-  virtual std::unique_ptr<Follower> makeFollower(
-      const Setup& setup, const reference_parameters::Params& references) = 0;
+  /// Declares the parameters that the controller has of its own. @return called when configured.
+  virtual MakeFollower declareParameters() = 0;
 
   std::vector<std::string> referenceNames() const override;
   bool on_set_chained_mode(bool chained_mode) override;
@@ -61,6 +61,7 @@ class FollowingController : public ChainableController {
  private:
   std::unique_ptr<ArmSource> arm_source_;
   std::shared_ptr<reference_parameters::ParamListener> reference_parameters_;
+  MakeFollower make_follower_;
   std::unique_ptr<Follower> follower_;  // null until configured
   std::vector<double> references_;      // newest, in the order of referenceNames()
 };

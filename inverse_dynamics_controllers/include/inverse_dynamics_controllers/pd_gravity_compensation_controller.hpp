@@ -8,13 +8,7 @@
 /// gravity. docs/ros2_controllers.md has the parameters, tuning, and what is promised.
 #pragma once
 
-#include <memory>
-
 #include "inverse_dynamics_controllers/following_controller.hpp"
-
-namespace pd_gravity_compensation_controller {
-class ParamListener;
-}
 
 namespace inverse_dynamics_controllers {
 
@@ -22,17 +16,8 @@ namespace inverse_dynamics_controllers {
 ///
 /// Real time: update(): no allocation, lock, exception or system call of its own.
 class PdGravityCompensationController : public FollowingController {
- public:
-  PdGravityCompensationController();
-  ~PdGravityCompensationController() override;
-
  protected:
-  void declareParameters() override;
-  std::unique_ptr<Follower> makeFollower(const Setup& setup,
-                                         const reference_parameters::Params& references) override;
-
- private:
-  std::shared_ptr<pd_gravity_compensation_controller::ParamListener> parameters_;
+  MakeFollower declareParameters() override;
 };
 
 }  // namespace inverse_dynamics_controllers
