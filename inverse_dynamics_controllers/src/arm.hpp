@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What the controllers have in common when they are configured: solver, joints, limits, options.
+/// Configuration that all controllers share: solver, joints, limits, options.
 #pragma once
 
 #include <inverse_dynamics_control/control_law.hpp>
@@ -30,7 +30,7 @@ struct Arm {
   inverse_dynamics_control::DescribedLimits limits;
 };
 
-/// All that a controller is configured from.
+/// Inputs of a controller's configuration.
 struct Setup {
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node;
   ArmParameters parameters;
@@ -63,7 +63,7 @@ class ArmSource {
 
  private:
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node_;
-  std::shared_ptr<void> suggesting_;  // what a misspelt parameter meant
+  std::shared_ptr<void> suggesting_;  // suggests names for misspelt parameters
   std::shared_ptr<arm_parameters::ParamListener> parameters_;
   std::shared_ptr<law_parameters::ParamListener> law_;  // null: nothing is commanded
   RobotDescriptionTopic description_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What the arm carries: a rigid body at its tip that comes and goes while the controller runs.
+/// The body that the arm carries, which may change while the controller runs.
 #pragma once
 
 #include <geometry_msgs/msg/inertia_stamped.hpp>

@@ -26,7 +26,7 @@
 
 namespace inverse_dynamics_controllers {
 
-/// What the controllers' cycles have in common. One thread at a time.
+/// The common part of the controllers' cycles. One thread at a time.
 class ControlLoop {
  public:
   explicit ControlLoop(const Setup& setup)
@@ -100,7 +100,7 @@ class ControlLoop {
     publisher_.note(time, state_, reference, tau_);
   }
 
-  /// The law's safe torque: what a controller leaves behind that fails, or is shut down while active.
+  /// Commands the law's safe torque when a controller fails, or is shut down while active.
   void leave(inverse_dynamics_control::ControlLaw& law, const StateInterfaces& states,
              CommandInterfaces& commands) noexcept {
     if (states.empty() || commands.empty()) return;  // not active
@@ -109,7 +109,7 @@ class ControlLoop {
     interfaces_.write(tau_, commands);
   }
 
-  /// Zero effort: what a controller leaves behind when it is deactivated.
+  /// Commands zero effort when a controller is deactivated.
   void stop(CommandInterfaces& commands) noexcept {
     tau_.setZero();
     interfaces_.write(tau_, commands);
@@ -127,7 +127,7 @@ class ControlLoop {
   StatePublisher publisher_;
 };
 
-/// No interface at all: what a controller claims before it is configured.
+/// No interfaces: a controller claims none before it is configured.
 inline controller_interface::InterfaceConfiguration nothing() {
   return {controller_interface::interface_configuration_type::NONE, {}};
 }
@@ -140,7 +140,7 @@ inline void requireConfigured(bool configured) {
       "one that isn't", "configure it first, and see that this succeeds"));
 }
 
-/// Runs what a transition has to do; what it throws is logged, and fails the transition.
+/// Runs a transition; an exception is logged, and fails it.
 template <class Work>
 controller_interface::CallbackReturn transition(const rclcpp::Logger& logger, const Work& work) {
   try {

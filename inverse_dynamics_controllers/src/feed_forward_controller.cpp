@@ -18,7 +18,7 @@ using inverse_dynamics_control::Status;
 
 namespace {
 
-// Without a motion among the references the model is asked at the measured state.
+// Without a motion among the references, the model is evaluated at the measured state.
 ModelState modelState(const feed_forward_controller::Params& params,
                       const ReferenceLayout& layout) {
   return params.model_state == "measured" || !layout.hasMotion() ? ModelState::kMeasured

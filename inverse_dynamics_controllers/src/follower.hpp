@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A law with the references it follows and the loop it runs in: what configuring makes.
+/// A law with its references and its loop, made when a controller is configured.
 #pragma once
 
 #include <inverse_dynamics_control/pd_gravity_compensation.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What a chainable controller is asked to do: by the controller before it, or by a topic.
+/// References of a chainable controller: from the controller before it, or from a topic.
 #pragma once
 
 #include <algorithm>

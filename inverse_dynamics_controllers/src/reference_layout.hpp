@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What a chainable controller's reference interfaces mean, and the numbers behind them.
+/// Meaning and order of a chainable controller's reference interfaces.
 #pragma once
 
 #include <Eigen/Core>

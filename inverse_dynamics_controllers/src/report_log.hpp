@@ -11,7 +11,7 @@
 
 namespace inverse_dynamics_controllers {
 
-/// What the control loop counts needs no order.
+/// Counters of the control loop need no memory order.
 constexpr auto kRelaxed = std::memory_order_relaxed;
 
 /// A sentence for the log.

@@ -62,7 +62,7 @@ std::string RobotDescriptionTopic::find(const std::string& parameter,
 }
 
 std::string RobotDescriptionTopic::takeNewest() const {
-  // What has arrived, even if the node's executor hasn't come to it yet.
+  // Takes messages that have arrived, even if the node's executor hasn't handled them yet.
   String arrived;
   rclcpp::MessageInfo info;
   while (subscription_->take(arrived, info)) inbox_->receive(arrived);

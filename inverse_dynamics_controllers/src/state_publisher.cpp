@@ -13,7 +13,7 @@ using control_msgs::msg::JointTrajectoryControllerState;
 using inverse_dynamics_control::JointState;
 using inverse_dynamics_control::Reference;
 
-// What one cycle has to tell.
+// Content of a message.
 struct Cycle {
   explicit Cycle(Eigen::Index joints)
       : state(joints), reference(joints), tau(Eigen::VectorXd::Zero(joints)) {}

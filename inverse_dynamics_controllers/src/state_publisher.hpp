@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What a controller does, on its topic ~/controller_state.
+/// The state of a controller on its topic ~/controller_state.
 ///
 /// The message is a joint_trajectory_controller's, so that the same tools show it: reference,
 /// feedback, error, and efforts as output.

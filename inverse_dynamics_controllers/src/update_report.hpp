@@ -39,7 +39,7 @@ class UpdateReport {
   /// An effort couldn't be written to the hardware.
   void noteNotWritten() noexcept { not_written_.fetch_add(1, std::memory_order_relaxed); }
 
-  /// What happened since the last call. Allocates.
+  /// Events since the last call. Allocates.
   std::vector<Line> takeLines();
 
  private:

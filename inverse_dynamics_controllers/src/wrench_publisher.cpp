@@ -16,7 +16,7 @@ using inverse_dynamics_control::ContactSensing;
 using sensor_msgs::msg::JointState;
 using std_msgs::msg::Bool;
 
-// Of one cycle.
+// Estimates of one cycle.
 struct Estimate {
   std::int64_t nanoseconds = 0;
   Eigen::VectorXd torques;

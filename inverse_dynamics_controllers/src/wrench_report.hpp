@@ -30,7 +30,7 @@ class WrenchReport {
   /// The controller gives up: no estimate until it is activated again.
   void noteGivenUp(EstimateStatus why) noexcept;
 
-  /// What happened since the last call. Allocates.
+  /// Events since the last call. Allocates.
   std::vector<ReportLine> takeLines();
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What the controllers that follow references have in common: all but their law.
+/// Base of the controllers that follow references: everything but their law.
 ///
 ///     class MyController : public FollowingController {
 ///       MakeFollower declareParameters() override;   // its own; what makes law and references of them
@@ -45,11 +45,11 @@ class FollowingController : public ChainableController {
   controller_interface::CallbackReturn on_shutdown(const rclcpp_lifecycle::State& state) override;
 
  protected:
-  /// All that a configuration makes. What it throws fails that transition.
+  /// Makes law and references when configured. An exception fails that transition.
   using MakeFollower =
       std::function<std::unique_ptr<Follower>(const Setup&, const reference_parameters::Params&)>;
 
-  /// Declares the parameters that the controller has of its own. @return called when configured.
+  /// Declares the controller's own parameters. @return called when configured.
   virtual MakeFollower declareParameters() = 0;
 
   std::vector<std::string> referenceNames() const override;

@@ -4,7 +4,7 @@
 ///
 ///     tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f
 ///
-/// What it follows comes from the controller before it (a joint_trajectory_controller with
+/// References come from the controller before it (a joint_trajectory_controller with
 /// command_interfaces position, velocity, acceleration), or from the topic ~/reference.
 /// docs/ros2_controllers.md has the parameters, tuning, and what is promised.
 #pragma once

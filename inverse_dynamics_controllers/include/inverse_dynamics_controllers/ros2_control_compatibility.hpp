@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What differs between releases of ros2_control, from humble to rolling, found by what is there.
+/// Differences between releases of ros2_control, from humble to rolling, detected by features.
 ///
 ///     const double q = valueOf(state_interfaces_[0]);     // NaN where it can't be read
 ///     setValue(command_interfaces_[0], tau);
@@ -141,8 +141,8 @@ class Strict : public Base {
 
 /// Base class of the chainable controllers, the same in all releases.
 ///
-/// Of each pair of functions that take or give something else in another release one overrides;
-/// none says so, for the other one doesn't.
+/// Of each pair of functions with different signatures, one overrides; neither is marked `override`,
+/// as the other one doesn't.
 class ChainableController : public Strict<controller_interface::ChainableControllerInterface> {
  protected:
   /// Names of the references below the controller's; called when it is configured.
@@ -238,7 +238,7 @@ class ExportingBroadcaster : public ChainableController {
   virtual controller_interface::return_type measure(const rclcpp::Time& time,
                                                     const rclcpp::Duration& period) noexcept = 0;
 
-  /// What others read from now on: force, then torque. Real time: no allocation, exception or system call.
+  /// Sets the exported states: force, then torque. Real time: no allocation, exception or system call.
   void setStates(const std::array<double, 6>& values) noexcept {
     for (std::size_t k = 0; k < states_.size(); ++k) setValue(*states_[k], values[k]);
   }
