@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 MEASURED: dict[str, Any] = {"color": palette.MEASURED, "linewidth": 1.5}
 COMPUTED: dict[str, Any] = {"color": palette.COMPUTED, "linewidth": 0.9}
 ERROR: dict[str, Any] = {"color": palette.ERROR, "linewidth": 0.7}
+LIMIT: dict[str, Any] = {"color": "black", "linestyle": (0, (3.0, 1.6)), "linewidth": 0.8}
 LEFT_OUT: dict[str, Any] = {"color": palette.LEFT_OUT, "linewidth": 0, "zorder": 0.5}
 _MUTED = palette.MUTED
 
@@ -137,14 +138,11 @@ def _figure(
     heading: Sequence[str],
 ) -> Figure:
     """Torques of runs of one recording, and their errors."""
-    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     first = runs[0]
-    n = len(first.joint_names)
-    figure = Figure(figsize=(11.0, 1.25 * n + 1.7))
-    axes = _panels(figure, n, top=1.32, bottom=0.5)
+    figure, axes = panels(len(first.joint_names), 1.25, 1.32, (1.7, 1.0))
     left_out = first.samples.left_out_spans(first.log)
     for j, (left, right) in enumerate(axes):
         _draw_torques(left, runs, j)
@@ -152,7 +150,6 @@ def _figure(
         for axis in (left, right):
             shade(axis, left_out, 0.004, LEFT_OUT)
     for axis in axes[-1]:
-        axis.set_xlabel("time [s]", color=_MUTED)
         axis.set_xlim(first.time[0], first.time[-1])
     write_heading(figure, *heading)
     torques: list[Line2D | Patch] = [Line2D([], [], label="measured torque", **MEASURED)]
@@ -167,6 +164,33 @@ def _figure(
     write_legend(figure, torques, torque_place, 0.87)
     write_legend(figure, [error], error_place, 0.87)
     return figure
+
+
+def panels(
+    rows: int, each: float, top: float, ratios: Sequence[float] = (1.0,)
+) -> tuple[Figure, NDArray[np.object_]]:
+    """A figure and its axes (rows, columns) over one time. each: inches of a row; top: inches left above them."""
+    from matplotlib.figure import Figure
+
+    height = each * rows + top + 0.38
+    figure = Figure(figsize=(11.0, height))
+    axes = figure.subplots(rows, len(ratios), sharex=True, squeeze=False, width_ratios=ratios)
+    figure.subplots_adjust(
+        left=0.065,
+        right=0.985,
+        top=1 - top / height,
+        bottom=0.5 / height,
+        hspace=0.42,
+        wspace=0.13,
+    )
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]", color=_MUTED)
+    return figure, axes
+
+
+def write_title(axes: Axes, title: str, **more: Any) -> None:
+    """The title of a panel."""
+    axes.set_title(title, loc="left", fontsize=9, pad=3, **more)
 
 
 def write_heading(figure: Figure, title: str, *lines: str) -> None:
@@ -206,27 +230,12 @@ def shade(
         axes.axvspan(begin, max(end, begin + width), ymax=top, **style)
 
 
-def _panels(figure: Figure, n: int, *, top: float, bottom: float) -> NDArray[np.object_]:
-    """Axes (n, 2) at fixed places, torques and errors; `top` and `bottom` inches are left to others."""
-    axes = figure.subplots(n, 2, sharex=True, squeeze=False, width_ratios=(1.7, 1.0))
-    height = figure.get_figheight()
-    figure.subplots_adjust(
-        left=0.065,
-        right=0.985,
-        top=1 - top / height,
-        bottom=bottom / height,
-        hspace=0.42,
-        wspace=0.13,
-    )
-    return axes
-
-
 def _draw_torques(axes: Axes, runs: Sequence[Evaluation], j: int) -> None:
     first = runs[0]
     axes.plot(*line(first.time, first.measured[:, j]), **MEASURED)
     for k, run in enumerate(runs):
         axes.plot(*line(run.time, run.computed[:, j]), **{**COMPUTED, "color": _color(k)})
-    axes.set_title(f"{first.joint_names[j]} [{first.units[j]}]", loc="left", fontsize=9, pad=3)
+    write_title(axes, f"{first.joint_names[j]} [{first.units[j]}]")
     axes.margins(y=0.08)
 
 
@@ -251,4 +260,4 @@ def _draw_errors(
         title += f", {100 * of_joint[0].nrmse:.2g} % of range"
     if peak > largest:
         title += f", cut: peak {peak:.3g}"
-    axes.set_title(title, loc="left", fontsize=9, pad=3, color=_MUTED)
+    write_title(axes, title, color=_MUTED)

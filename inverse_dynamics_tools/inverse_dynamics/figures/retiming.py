@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.plots import save_figure
+from inverse_dynamics.figures.plots import COMPUTED, LIMIT, MEASURED, write_title
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from typing import Any
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from inverse_dynamics.evaluation.retiming import Retimed
 
+_BAND: dict[str, Any] = {"color": palette.COMPUTED, "alpha": 0.2, "linewidth": 0}
 JOINT_COLORS = (
     "#0072B2",
     "#D55E00",
@@ -28,12 +29,6 @@ JOINT_COLORS = (
     "#882255",
     "#7A4A12",
 )
-
-
-def save_retime_figure(result: Retimed, *files: Path) -> None:
-    """Save retime_figure(); formats are those of the suffixes. The same motion, the same bytes."""
-    if files:
-        save_figure(lambda: retime_figure(result), *files)
 
 
 def retime_figure(result: Retimed) -> Figure:
@@ -71,27 +66,14 @@ def _draw_speed(axis: Axes, result: Retimed) -> None:
     axis.fill_between(
         timed.s, np.minimum(limit, top), top, color=palette.LEFT_OUT, alpha=0.3, linewidth=0
     )
-    axis.plot(
-        timed.s, timed.speed, color=palette.COMPUTED, linewidth=1.2, label="within torque limits"
-    )
+    axis.plot(timed.s, timed.speed, **COMPUTED, label="within torque limits")
     if result.by_acceleration is not None:
         other = result.by_acceleration
-        axis.plot(
-            other.s,
-            other.speed,
-            color=palette.MEASURED,
-            linewidth=1.5,
-            label="constant acceleration limit",
-        )
+        axis.plot(other.s, other.speed, **MEASURED, label="constant acceleration limit")
     axis.set_xlim(timed.s[0], timed.s[-1])
     axis.set_ylim(0.0, top)
     axis.legend(loc="lower right", fontsize=8, frameon=False)
-    axis.set_title(
-        "speed along the path [rad/s]; grey: beyond what limits allow",
-        loc="left",
-        fontsize=9,
-        pad=3,
-    )
+    write_title(axis, "speed along the path [rad/s]; grey: beyond what limits allow")
 
 
 def _draw_strip(axis: Axes, result: Retimed) -> None:
@@ -109,7 +91,7 @@ def _draw_strip(axis: Axes, result: Retimed) -> None:
     axis.set_yticks([])
     axis.grid(visible=False)
     axis.set_xlabel("way along the path [rad]", color=palette.MUTED, labelpad=1)
-    axis.set_title("joint at its torque limit", loc="left", fontsize=9, pad=3)
+    write_title(axis, "joint at its torque limit")
     if shown:
         axis.legend(
             handles=shown,
@@ -126,29 +108,14 @@ def _draw_strip(axis: Axes, result: Retimed) -> None:
 def _draw_torque(axis: Axes, result: Retimed, j: int) -> None:
     limit, band, torque = result.limits.torque[j], result.band[j], result.efforts[:, j]
     if band > 0.0:
-        axis.fill_between(
-            result.time,
-            torque - band,
-            torque + band,
-            color=palette.COMPUTED,
-            alpha=0.2,
-            linewidth=0,
-        )
-    axis.plot(result.time, torque, color=palette.COMPUTED, linewidth=1.0)
+        axis.fill_between(result.time, torque - band, torque + band, **_BAND)
+    axis.plot(result.time, torque, **COMPUTED)
     for sign in (-1, 1):
-        axis.plot(
-            result.time,
-            sign * result.torque_limit[:, j],
-            color="black",
-            linestyle=(0, (3.0, 1.6)),
-            linewidth=0.8,
-        )
+        axis.plot(result.time, sign * result.torque_limit[:, j], **LIMIT)
     axis.set_xlim(result.time[0], result.time[-1])
     axis.set_ylim(-1.15 * limit, 1.15 * limit)
-    axis.set_title(
+    write_title(
+        axis,
         f"{result.joint_names[j]} [{result.units[j]}], limit {limit:g} {result.units[j]}, at it "
         f"{100 * result.at_limit[j]:.0f} % of the time",
-        loc="left",
-        fontsize=9,
-        pad=3,
     )

@@ -9,19 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.base.files import (
-    Contents,
-    check_output_directory,
-    move_up,
-    write_text,
-    written_whole,
-)
+from inverse_dynamics.base.files import Contents, move_up, write_text, written_whole
 from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.data.bags import new_recording, unwritable
 from inverse_dynamics.data.joint_trajectories import MESSAGE_TYPE, typestore
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.figures.plots import check_formats
-from inverse_dynamics.figures.retiming import save_retime_figure
+from inverse_dynamics.figures.plots import check_formats, save_figure
+from inverse_dynamics.figures.retiming import retime_figure
 from inverse_dynamics.report.retimed import render_retimed_page
 
 if TYPE_CHECKING:
@@ -37,18 +31,6 @@ PAGE = "report.html"
 CONTENTS = Contents(
     MARK, (MARK, TABLE, PAGE, "torques.*", "metadata.yaml", "{name}.db3*", "{name}.mcap")
 )
-
-
-def check_output(
-    out: Path,
-    figures: Sequence[str] = (),
-    *,
-    overwrite: bool = False,
-    inputs: Iterable[Path | None] = (),
-) -> None:
-    """Raise OutputError unless write_retimed() may write there."""
-    check_formats(figures)
-    check_output_directory(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs)
 
 
 def write_retimed(
@@ -77,7 +59,7 @@ def write_retimed(
         OutputError, BagError.
     """
     out = Path(out)
-    check_output(out, figures, overwrite=overwrite, inputs=inputs)
+    check_formats(figures)
     with written_whole(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as directory:
         try:
             with new_recording(directory / out.name, storage) as writer:
@@ -87,7 +69,8 @@ def write_retimed(
             raise error if isinstance(error, BagError) else unwritable(out, error) from error
         move_up(directory / out.name)
         write_text(directory / TABLE, table_text(result))
-        save_retime_figure(result, *(directory / f"torques.{suffix}" for suffix in figures))
+        files = (directory / f"torques.{suffix}" for suffix in figures)
+        save_figure(lambda: retime_figure(result), *files)
         write_text(directory / PAGE, render_retimed_page(result))
         write_text(directory / MARK, json_text(summary(result)))
 

@@ -79,12 +79,15 @@ def _distance(text: str) -> float:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.results.retimed import check_output
+    from inverse_dynamics.base.files import check_output_directory
+    from inverse_dynamics.results.retimed import CONTENTS
     from inverse_dynamics.robot.robots import with_changes
 
     robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
     inputs = (arguments.path, *robot.files)
-    check_output(arguments.out, arguments.figures, overwrite=arguments.overwrite, inputs=inputs)
+    check_output_directory(
+        arguments.out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs
+    )
 
     from inverse_dynamics._core import RetimeOptions
     from inverse_dynamics.evaluation.evaluation import Arm
