@@ -30,8 +30,8 @@ from inverse_dynamics.identification.knowledge import (
     intervals,
     knowledge,
 )
+from inverse_dynamics.identification.result import identified_model, urdf_of
 from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.results.model_files import identified_model, urdf_of
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.simulation import EffortNoise, Resolution, Sensors, simulate, write_run
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory

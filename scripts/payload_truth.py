@@ -22,8 +22,8 @@ from inverse_dynamics.identification.blocks import blocks_outside, together
 from inverse_dynamics.identification.cross_validation import choose
 from inverse_dynamics.identification.knowledge import knowledge
 from inverse_dynamics.identification.payload import Samples, fit_payload, samples_of, with_load
+from inverse_dynamics.identification.result import model_file_text, urdf_of
 from inverse_dynamics.identification.uncertainty import factor_of
-from inverse_dynamics.results.model_files import model_file_text, urdf_of
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import RIGID_BODY
 

@@ -111,7 +111,6 @@ def identification(recording: Path = Path("recording"), **changes: object) -> Id
         "levels": (),
         "findings": (Finding("prior", "masses of single links are the description's"),),
         "notes": ("3 samples repeat the one before",),
-        "seconds": {"fit": 0.1},
     }
     return Identification(**{**fields, **changes})
 

@@ -19,12 +19,11 @@ from inverse_dynamics.base.plain import plain
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import OutputError, RobotError, SolverError
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
+from inverse_dynamics.identification.hold_out import hold_out
 from inverse_dynamics.identification.refusals import check_result
-from inverse_dynamics.identification.result import IdentificationError
+from inverse_dynamics.identification.result import IdentificationError, model_file_text
 from inverse_dynamics.results import identifications, robot_files
-from inverse_dynamics.results.hold_out import hold_out
 from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.results.model_files import model_file_text
 from inverse_dynamics.results.universal_robots import friction_request
 from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.link_parameters import turned

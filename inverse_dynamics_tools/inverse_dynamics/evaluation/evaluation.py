@@ -31,7 +31,7 @@ from inverse_dynamics.evaluation.causes.samples import pieces_of
 from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.views import Views
-from inverse_dynamics.robot.descriptions import joint_units, read_description
+from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.dh_tables import guess_notes
 from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot, with_changes
 from inverse_dynamics.robot.solvers import description_notes, open_solver
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.bags import JointStateTopic
     from inverse_dynamics.data.joint_log import Clock
+    from inverse_dynamics.evaluation.causes.arm import ArmModel
 
 __all__ = ["Arm", "Evaluation", "JointError", "check_options", "evaluate", "joint_errors"]
 
@@ -231,7 +232,6 @@ def evaluate(
         motion = window.of(motion, f"{bag}")
     result = _compare(
         bag,
-        robot,
         arm,
         motion,
         clock=clock,
@@ -248,26 +248,36 @@ def evaluate(
         *(guess_notes(robot.urdf) if robot.urdf is not None else ()),
         *(description_notes(robot, "drawing") if urdf is not None else ()),
     )
-    result = replace(result, notes=(*notes, *result.notes))
+    result = _with_band(replace(result, notes=(*notes, *result.notes)), arm)
+    return result if posture.moves else _with_causes(result, arm)
+
+
+def _with_band(result: Evaluation, arm: Arm) -> Evaluation:
+    """The same with the band of the robot's model, and a note where the motion leaves the model's range."""
     states = (result.log.q, result.log.qd, result.qdd)
-    kept = result.samples.kept
     outside = outside_of_seen(
-        arm.solver.seen, states, kept, arm.joint_names, arm.units, types=result.joint_types
+        arm.solver.seen,
+        states,
+        result.samples.kept,
+        arm.joint_names,
+        arm.units,
+        types=result.joint_types,
     )
-    band, other = read_band(robot.model, arm.solver)
-    result = replace(
+    band, other = read_band(arm.robot.model, arm.solver)
+    return replace(
         result,
         notes=(*result.notes, *filter(None, [outside, other])),
         band=None if band is None else band.of_recording(arm.solver, *states),
     )
-    if posture.moves:
-        return result
+
+
+def _with_causes(result: Evaluation, arm: Arm) -> Evaluation:
+    """The same with the likely causes of its errors."""
     without_gravity = result.effort.meaning == "torque_without_gravity"
+    states = (result.log.q, result.log.qd, result.qdd)
     found = compare(
-        pieces_of(arm.joint_names, result.time, states, result.measured, kept),
-        arm_model(
-            robot, arm.solver, arm.description, arm.subtracted, without_gravity=without_gravity
-        ),
+        pieces_of(arm.joint_names, result.time, states, result.measured, result.samples.kept),
+        arm.model(without_gravity=without_gravity),
     )
     result = replace(result, effort=found.doubting(result.effort), diagnosis=found.causes)
     if not found.text:
@@ -319,8 +329,10 @@ class Arm:
         self.joint_names = tuple(self.solver.joint_names)
         self.recorded_names = tuple(_core.recorded_names(robot, list(self.joint_names)))
         _core.effort_options(robot, self.solver)  # drive gains that don't fit are refused
-        self.units = joint_units(robot.urdf, description, self.joint_names)
-        self._robot = robot
+        self.units = tuple(
+            "N" if kind == "prismatic" else "N m" for kind in self.solver.joint_types
+        )
+        self.robot = robot
 
     @cached_property
     def subtracted(self) -> Solver:
@@ -328,10 +340,20 @@ class Arm:
 
         The robot subtracts what its maker computes, which nobody measures with such efforts.
         """
-        robot = self._robot
+        robot = self.robot
         if robot.model is None or robot.urdf is None or robot.plugin != RIGID_BODY:
             return self.solver
         return open_solver(replace(robot, model=None, friction=False), self.description)
+
+    def model(self, *, without_gravity: bool = False) -> ArmModel:
+        """What causes of errors are compared on. without_gravity: whether efforts are."""
+        return arm_model(
+            self.robot,
+            self.solver,
+            self.description,
+            self.subtracted,
+            without_gravity=without_gravity,
+        )
 
 
 def torques_with_gravity(evaluation: Evaluation, robot: Robot | None = None) -> Floats:
@@ -344,7 +366,6 @@ def torques_with_gravity(evaluation: Evaluation, robot: Robot | None = None) -> 
 
 def _compare(
     bag: Path,
-    robot: Robot,
     arm: Arm,
     motion: JointLog | JointStateTopic,
     *,
@@ -358,6 +379,7 @@ def _compare(
     """Computed torques of a motion against its measured ones. Raises EvaluationError, RobotError."""
     from inverse_dynamics import _core
 
+    robot = arm.robot
     if isinstance(motion, JointLog):
         expected, notes = len(motion), motion.notes
     else:
@@ -369,8 +391,7 @@ def _compare(
             found.table.series[name] for name in ("time", "q", "qd", "qdd", "effort", "kept")
         )
         samples = pieces_of(arm.joint_names, time, (q, qd, qdd), recorded, kept)
-        model = arm_model(robot, arm.solver, arm.description, arm.subtracted)
-        return meaning_of_efforts(samples, model, effort.drive_gains)
+        return meaning_of_efforts(samples, arm.model(), effort.drive_gains)
 
     options = _core.EvaluationOptions(
         joints=list(arm.recorded_names),

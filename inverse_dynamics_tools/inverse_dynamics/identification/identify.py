@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -50,7 +49,8 @@ from inverse_dynamics.identification.result import (
     Identification,
     IdentificationError,
     IdentifiedModel,
-    solver_of_text,
+    fitted_solver,
+    valid_samples,
 )
 from inverse_dynamics.identification.uncertainty import (
     band_of,
@@ -58,12 +58,8 @@ from inverse_dynamics.identification.uncertainty import (
     levels_of,
     with_levels,
 )
-from inverse_dynamics.robot.descriptions import (
-    effort_limits,
-    link_of,
-    parse_description,
-    read_description,
-)
+from inverse_dynamics.robot.chain_geometry import chain_geometry
+from inverse_dynamics.robot.descriptions import effort_limits, read_description
 from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot
 
 if TYPE_CHECKING:
@@ -140,7 +136,6 @@ def identify(
     >>> found.solver().joint_names[2]
     'elbow_joint'
     """
-    begin = time.perf_counter()
     if not isinstance(robot, Robot):
         robot = load_robot(robot)
     check_accepted(accept)
@@ -171,8 +166,6 @@ def identify(
         )
         robot = replace(robot, drive_gains=tuple(gain.value for gain in gains))
     check_gains(robot, options.get("effort_is"))
-    seconds = {"drive gains": time.perf_counter() - begin} if gains else {}
-    begin = time.perf_counter()
     evaluations = on_one_turn(
         [evaluate(path, robot, progress=progress, **options) for path in recordings]
     )
@@ -182,8 +175,6 @@ def identify(
     evaluations = [replace(e, measured=torques_with_gravity(e, plain)) for e in evaluations]
     groups = _groups(evaluations, blocks)
     cut = [block for group in groups for block in group]
-    seconds["reading"] = time.perf_counter() - begin
-    begin = time.perf_counter()
     described = _core.FastModel.from_urdf(
         description, root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
@@ -192,8 +183,6 @@ def identify(
     level = limits if by_day else None
     held_out = _held_out(fitter, described, level, baselines(robot, description), groups, progress)
     chosen = choose(fitter, cut)
-    seconds["fitting"] = time.perf_counter() - begin
-    begin = time.perf_counter()
     found = _result(
         description,
         described,
@@ -205,9 +194,8 @@ def identify(
         chosen=chosen,
         by_day=by_day,
     )
-    seconds["intervals"] = time.perf_counter() - begin
     notes = tuple(dict.fromkeys((*posture.notes, *unfitted, *found.notes)))
-    found = replace(found, drive_gains=gains, notes=notes, seconds=seconds)
+    found = replace(found, drive_gains=gains, notes=notes)
     check_result(found, accept)
     return found
 
@@ -332,8 +320,7 @@ def _banded(
         worth=1.0,
     )
     factor = factor_of(fitter, chosen.fit, later, known, law=chosen.law)
-    model = described.identified(_model(fitter, chosen, blocks, None))
-    solver = solver_of_text(model.file_text(name="fit", source="", validity=""))
+    solver = fitted_solver(described, _model(fitter, chosen, blocks, None))
     return band_of(chosen, factor, blocks, limits), solver
 
 
@@ -357,7 +344,8 @@ def _result(
 ) -> Identification:
     first, fit = evaluations[0], chosen.fit
     robot = first.robot
-    links = _links(description, fitter.joint_names)
+    chain = chain_geometry(description, robot.root, fitter.joint_names)
+    links = tuple(joint.link for joint in chain)
     later = [block.later(chosen.delay) for block in moving(cut)]
     errors = [errors_of(fitter, fit, block) for block in later]
     independent = independent_samples(errors)
@@ -381,9 +369,8 @@ def _result(
     model = _model(fitter, chosen, cut, np.array(first.effort.drive_gains) if currents else None)
     levels: tuple[Level, ...] = ()
     if by_day:
-        text = described.identified(model).file_text(name="fit", source="", validity="")
         names = list(dict.fromkeys(block.recording for block in held_out))
-        levels = levels_of(names, held_out, solver_of_text(text))
+        levels = levels_of(names, held_out, fitted_solver(described, model))
     held, coverage = _held_out_errors(held_out)
     return Identification(
         robot=robot,
@@ -419,7 +406,6 @@ def _result(
         ),
         # but for the cause of the present model's errors, which the fit removes
         notes=tuple(note for e in evaluations for note in e.notes_without_causes),
-        seconds={},
     )
 
 
@@ -442,17 +428,6 @@ def _model(
 
 def _held_out_errors(blocks: Sequence[HeldOutBlock]) -> tuple[dict[str, Floats], Floats]:
     """RMSE (n,) of each column over the valid samples, and the share within the band."""
-    columns = [block.errors for block in blocks]
-    within = [
-        np.abs(e["identified"]) <= b.band[b.counts] for e, b in zip(columns, blocks, strict=True)
-    ]
-    return root_mean_squares(columns), np.concatenate(within).mean(0)
-
-
-def _links(description: str, joints: Sequence[str]) -> tuple[str, ...]:
-    """The links that the joints move."""
-    children = {
-        joint.get("name"): link_of(joint, "child")
-        for joint in parse_description(description).iter("joint")
-    }
-    return tuple(children.get(joint, joint) for joint in joints)
+    measured, identified, band = valid_samples(blocks, "measured", "identified", "band")
+    within = np.abs(measured - identified) <= band
+    return root_mean_squares([block.errors for block in blocks]), within.mean(0)

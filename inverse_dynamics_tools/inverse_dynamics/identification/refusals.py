@@ -15,7 +15,7 @@ from inverse_dynamics.base.wording import listed
 from inverse_dynamics.evaluation.causes.compare import Cause, residual_causes
 from inverse_dynamics.evaluation.causes.samples import pieces_of
 from inverse_dynamics.evaluation.evaluation import CAUSE
-from inverse_dynamics.identification.result import IdentificationError
+from inverse_dynamics.identification.result import IdentificationError, valid_samples
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -154,12 +154,7 @@ def check_result(found: Identification, accept: Sequence[str] = ()) -> None:
 def _check_mass(found: Identification) -> None:
     """Of all links, and of the efforts by the description's torques: masses near the base stay what it says."""
     mass, described = (float(links[:, 0].sum()) for links in (found.model.parameters, found.prior))
-    measured, urdf = (
-        np.concatenate([values[b.counts] for b, values in parts])
-        for parts in zip(
-            *(((b, b.measured), (b, b.computed["urdf"])) for b in found.blocks), strict=True
-        )
-    )
+    measured, urdf = valid_samples(found.blocks, "measured", "urdf")
     share = float((measured * urdf).sum() / (urdf**2).sum())
     if not all(1 / _MOST_MASS <= x <= _MOST_MASS for x in (mass / described, share)):
         raise _refusal(
@@ -174,13 +169,8 @@ def _check_mass(found: Identification) -> None:
 
 def _check_friction(found: Identification) -> None:
     """An arm without any, whose errors are against the motion: friction of the wrong sign."""
-    measured, error, qd = (
-        np.concatenate(values)
-        for values in zip(
-            *((b.measured[b.counts], b.errors["identified"], b.qd[b.counts]) for b in found.blocks),
-            strict=True,
-        )
-    )
+    measured, identified, qd = valid_samples(found.blocks, "measured", "identified", "qd")
+    error = measured - identified
     fc, fv = (np.array([law[key] for law in found.model.friction]) for key in ("fc", "fv"))
     friction = fc + fv * np.abs(qd).max(axis=0)
     with_motion = (error * qd).mean(axis=0) / np.sqrt(
@@ -211,12 +201,8 @@ def _causes_of_residuals(
 ) -> tuple[Cause, ...]:
     """What the held-out errors of a recording show: limits, couplings, drift."""
     ordered = sorted(blocks, key=lambda block: float(block.time[0]))
-    time, q, qd, measured, computed = (
-        np.concatenate([values[block.counts] for values, block in zip(parts, ordered, strict=True)])
-        for parts in zip(
-            *((b.time, b.q, b.qd, b.measured, b.computed["identified"]) for b in ordered),
-            strict=True,
-        )
+    time, q, qd, measured, computed = valid_samples(
+        ordered, "time", "q", "qd", "measured", "identified"
     )
     # pieces of what is computed, in the place of accelerations
     samples = pieces_of(found.joints, time, (q, qd, computed), measured)

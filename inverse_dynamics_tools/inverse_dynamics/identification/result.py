@@ -12,17 +12,20 @@ was fitted to the others, with everything chosen on the others too.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from inverse_dynamics._core import Solver
-from inverse_dynamics.errors import EvaluationError
+import numpy as np
+
+from inverse_dynamics._core import FastModel, Solver
+from inverse_dynamics.base.wording import counted, listed
+from inverse_dynamics.errors import EvaluationError, RobotError
+from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import RIGID_BODY
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.evaluation.bands import TorqueBand
@@ -53,14 +56,6 @@ class IdentificationError(EvaluationError):
     def __init__(self, text: str, mistake: str = "") -> None:
         super().__init__(text)
         self.mistake = mistake
-
-
-def solver_of_text(model: str) -> Solver:
-    """The solver of the text of a model file."""
-    with TemporaryDirectory() as directory:
-        file = Path(directory) / "model.yaml"
-        file.write_text(model, encoding="utf-8")
-        return Solver(RIGID_BODY, model=f"{file}")
 
 
 @dataclass(frozen=True)
@@ -115,6 +110,16 @@ class HeldOutBlock:
             name: (self.measured - computed)[self.counts]
             for name, computed in self.computed.items()
         }
+
+
+def valid_samples(blocks: Sequence[HeldOutBlock], *names: str) -> list[Floats]:
+    """Valid samples of blocks, one block after another: of fields, or of torques by name of COLUMNS."""
+
+    def of(block: HeldOutBlock, name: str) -> Floats:
+        values: Floats = block.computed[name] if name in COLUMNS else getattr(block, name)
+        return values[block.counts]
+
+    return [np.concatenate([of(block, name) for block in blocks]) for name in names]
 
 
 @dataclass(frozen=True)
@@ -204,7 +209,6 @@ class Identification:
     levels: tuple[Level, ...]  # of each recording, where there are several
     findings: tuple[Finding, ...]
     notes: tuple[str, ...]  # of reading and differentiating, as evaluate() has them
-    seconds: Mapping[str, float]  # what took how long
     drive_gains: tuple[DriveGain, ...] = ()  # determined with known loads; of currents only
 
     def rmse(self, column: str) -> float:
@@ -213,8 +217,7 @@ class Identification:
 
     def solver(self) -> Solver:
         """The identified model as a solver, as `Solver(model=...)` of its model file is."""
-        files = import_module("inverse_dynamics.results.model_files")
-        return solver_of_text(files.model_file_text(self, "identified"))
+        return fitted_solver(_described(self), self.model)
 
     @property
     def offsets(self) -> Floats:
@@ -227,6 +230,66 @@ class Identification:
         return self._values("shift")
 
     def _values(self, key: str) -> Floats:
-        import numpy as np
-
         return np.array([law.get(key, 0.0) for law in self.model.friction])
+
+
+def model_file_text(found: Identification, name: str) -> str:
+    """The model as a model file (docs/model_file.md), with every digit. Raises RobotError, SolverError."""
+    return identified_model(found).file_text(
+        name=name, source=_source(found), validity=_validity(found)
+    )
+
+
+def identified_model(found: Identification) -> FastModel:
+    """The description's chain with the identified links, rotors and friction. Raises RobotError."""
+    return _described(found).identified(found.model)
+
+
+def _described(found: Identification) -> FastModel:
+    robot = found.robot
+    return FastModel.from_urdf(
+        read_description(urdf_of(found)), root=robot.root, tip=robot.tip, gravity=robot.gravity
+    )
+
+
+def fitted_solver(described: FastModel, model: IdentifiedModel) -> Solver:
+    """The solver of a model of the description's chain."""
+    with TemporaryDirectory() as directory:
+        file = Path(directory) / "model.yaml"
+        text = described.identified(model).file_text(name="identified", source="", validity="")
+        file.write_text(text, encoding="utf-8")
+        return Solver(RIGID_BODY, model=f"{file}")
+
+
+def urdf_of(found: Identification) -> Path:
+    """The description that was started from. Raises RobotError."""
+    if found.robot.urdf is None:
+        raise RobotError(
+            f"robot {found.robot.name}: expected a description, whose geometry the model has; give --urdf"
+        )
+    return found.robot.urdf
+
+
+def _source(found: Identification) -> str:
+    names = listed([path.name for path in found.recordings])
+    return (
+        f"`ids identify` on {counted(len(found.recordings), 'recording')} ({names}): {found.samples} samples, "
+        f"{found.duration:.1f} s; prior and geometry: {urdf_of(found).name}; friction law "
+        f"{found.law}, prior strength {found.prior_strength:g}, torque delay {1e3 * found.delay:.1f} "
+        f"ms; {found.filter}; efforts: {found.effort}"
+    )
+
+
+def _validity(found: Identification) -> str:
+    error = ", ".join(
+        f"{joint} {value:.3g} {unit}"
+        for joint, value, unit in zip(
+            found.joints, found.held_out["identified"], found.units, strict=True
+        )
+    )
+    return (
+        "All links are physically consistent, so H is positive definite. Root mean square error on "
+        f"data that were held out: {error}. Within the ranges stated as `seen`, of the robot, load and "
+        "temperature of the recordings: friction and offset differ on another day. Masses of single "
+        "links are mostly those of the description: torques don't determine them."
+    )

@@ -18,7 +18,7 @@ from inverse_dynamics.evaluation.bands import LEVEL, SHARE, TorqueBand
 from inverse_dynamics.evaluation.contacts import LEAST_GAIN
 from inverse_dynamics.identification.blocks import together
 from inverse_dynamics.identification.cross_validation import errors_of
-from inverse_dynamics.identification.result import Level
+from inverse_dynamics.identification.result import Level, valid_samples
 from inverse_dynamics.robot.model_errors import SCHEMA, read_model_errors, sha256
 
 if TYPE_CHECKING:
@@ -104,11 +104,10 @@ def levels_of(
 
 def _level(recording: str, blocks: Sequence[HeldOutBlock], solver: Solver) -> Level:
     """By which offset and share of friction torques differ from those that other recordings predict."""
-    rows = [(b.q[b.counts], b.qd[b.counts], b.errors["identified"]) for b in blocks]
-    q, qd, errors = (np.concatenate(values) for values in zip(*rows, strict=True))
+    q, qd, measured, identified = valid_samples(blocks, "q", "qd", "measured", "identified")
     friction = solver.friction_vector(qd, q=q) - solver.friction_vector(np.zeros_like(qd), q=q)
     values = []
-    for f, v, e in zip(friction.T, np.abs(qd).T, errors.T, strict=True):
+    for f, v, e in zip(friction.T, np.abs(qd).T, (measured - identified).T, strict=True):
         moves = v > _MOVES * v.max()
         values.append(np.linalg.lstsq(np.column_stack([np.ones_like(f), f])[moves], e[moves])[0])
     offset, share = np.transpose(values)

@@ -20,10 +20,10 @@ from inverse_dynamics import _core
 from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
 from inverse_dynamics.base.plain import json_text, plain
 from inverse_dynamics.errors import OutputError
+from inverse_dynamics.identification.result import model_file_text
 from inverse_dynamics.identification.uncertainty import uncertainty_text
 from inverse_dynamics.report.identifications import render_identification
 from inverse_dynamics.report.tables import held_out_table
-from inverse_dynamics.results.model_files import model_file_text
 from inverse_dynamics.results.robot_files import robot_text
 from inverse_dynamics.robot.model_errors import model_errors_file
 from inverse_dynamics.robot.robots import RIGID_BODY
@@ -31,9 +31,9 @@ from inverse_dynamics.robot.robots import RIGID_BODY
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from inverse_dynamics.identification.hold_out import HoldOut
     from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.report.tables import ReportTable
-    from inverse_dynamics.results.hold_out import HoldOut
 
 SCHEMA = 1
 

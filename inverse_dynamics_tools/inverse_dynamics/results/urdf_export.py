@@ -19,11 +19,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.results.model_files import identified_model, urdf_of
+from inverse_dynamics.identification.result import identified_model, urdf_of
 from inverse_dynamics.results.yaml_text import yaml_number
 from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.descriptions import parse_description, read_description
-from inverse_dynamics.robot.link_parameters import about_center, turned
+from inverse_dynamics.robot.link_parameters import about_center, inertial_elements, turned
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
 _STATES = 2000  # of the recordings, over which the nearest friction is found
 _RAMP = 1.25  # widths of tanh(v / width), over which the nearest ramp rises
-_KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def urdf_text(found: Identification) -> str:
@@ -174,7 +173,6 @@ def _lumped_links(
 
 def _set_inertial(link: ElementTree.Element, parameters: Floats) -> None:
     """Mass, center of mass, and inertia about it, in the axes of the link."""
-    center, tensor = about_center(parameters)
     inertial = link.find("inertial")
     if inertial is None:
         inertial = ElementTree.Element("inertial")
@@ -183,12 +181,7 @@ def _set_inertial(link: ElementTree.Element, parameters: Floats) -> None:
     tail, indent = inertial.tail, inertial.text
     inertial.clear()
     inertial.tail, inertial.text = tail, indent
-    six = tensor[np.triu_indices(3)]
-    for tag, attributes in (
-        ("origin", {"xyz": " ".join(map(yaml_number, center)), "rpy": "0 0 0"}),
-        ("mass", {"value": yaml_number(parameters[0])}),
-        ("inertia", {key: yaml_number(x) for key, x in zip(_KEYS, six, strict=True)}),
-    ):
+    for tag, attributes in inertial_elements(parameters, yaml_number).items():
         ElementTree.SubElement(inertial, tag, attributes).tail = indent
     inertial[-1].tail = link.text
 

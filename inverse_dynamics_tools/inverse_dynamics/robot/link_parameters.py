@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from inverse_dynamics.base.arrays import Floats
 
 
@@ -32,6 +34,19 @@ def about_center(parameters: Floats) -> tuple[Floats, Floats]:
     center = parameters[1:4] / parameters[0]
     to_center = parameters[0] * (center @ center * np.eye(3) - np.outer(center, center))
     return center, inertia_matrix(parameters[4:]) - to_center
+
+
+def inertial_elements(
+    parameters: Floats, written: Callable[[float], str] = repr
+) -> dict[str, dict[str, str]]:
+    """Attributes of the elements of a URDF's <inertial>, by element. written: of numbers."""
+    center, tensor = about_center(parameters)
+    six = map(written, tensor[np.triu_indices(3)].tolist())
+    return {
+        "origin": {"xyz": " ".join(map(written, center.tolist())), "rpy": "0 0 0"},
+        "mass": {"value": written(float(parameters[0]))},
+        "inertia": dict(zip(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), six, strict=True)),
+    }
 
 
 def pseudo_inertia(parameters: Floats) -> Floats:

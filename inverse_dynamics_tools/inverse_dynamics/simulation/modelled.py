@@ -18,7 +18,7 @@ from inverse_dynamics._core import FastModel, Solver
 from inverse_dynamics.base.decimals import decimal
 from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.descriptions import parse_description, read_description
-from inverse_dynamics.robot.link_parameters import about_center, pseudo_inertia, turned
+from inverse_dynamics.robot.link_parameters import inertial_elements, pseudo_inertia, turned
 from inverse_dynamics.robot.solvers import open_solver
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.limits import require_limits
@@ -205,15 +205,9 @@ def _inertial(parameters: Floats, where: str) -> ElementTree.Element:
             f"{where}: expected inertia that a body can have, got a pseudo-inertia that isn't positive definite; "
             "simulate the model's friction alone with --joint-friction model"
         )
-    center, tensor = about_center(parameters)
-    inertial, six = ElementTree.Element("inertial"), tensor[np.triu_indices(3)].tolist()
-    keys = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-    for tag, values in (
-        ("origin", {"xyz": " ".join(map(repr, center.tolist()))}),
-        ("mass", {"value": repr(float(parameters[0]))}),
-        ("inertia", dict(zip(keys, map(repr, six), strict=True))),
-    ):
-        ElementTree.SubElement(inertial, tag, values)
+    inertial = ElementTree.Element("inertial")
+    for tag, attributes in inertial_elements(parameters).items():
+        ElementTree.SubElement(inertial, tag, attributes)
     return inertial
 
 

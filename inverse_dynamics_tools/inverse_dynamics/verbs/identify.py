@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from inverse_dynamics.base.arrays import Parameter
+    from inverse_dynamics.identification.hold_out import HoldOut
     from inverse_dynamics.identification.result import Identification
-    from inverse_dynamics.results.hold_out import HoldOut
     from inverse_dynamics.results.identifications import IdentificationFiles
     from inverse_dynamics.robot.robots import Robot
     from inverse_dynamics.verbs.screen import Line
@@ -144,8 +144,8 @@ def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.data.table_logs import parts_joined
+    from inverse_dynamics.identification.hold_out import hold_out
     from inverse_dynamics.identification.identify import identify
-    from inverse_dynamics.results.hold_out import hold_out
     from inverse_dynamics.results.identifications import (
         check_identification_files,
         identification_files,

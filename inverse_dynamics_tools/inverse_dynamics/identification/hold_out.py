@@ -17,9 +17,13 @@ import numpy as np
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
 from inverse_dynamics.identification.baselines import baseline_torques, baselines, root_mean_squares
-from inverse_dynamics.identification.result import IdentificationError
+from inverse_dynamics.identification.result import (
+    IdentificationError,
+    model_file_text,
+    urdf_of,
+    valid_samples,
+)
 from inverse_dynamics.identification.uncertainty import uncertainty_text
-from inverse_dynamics.results.model_files import model_file_text, urdf_of
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.model_errors import model_errors_file
 from inverse_dynamics.robot.robots import RIGID_BODY
@@ -77,11 +81,10 @@ def hold_out(
     if "present" not in found.held_out:
         solvers.pop("present", None)
     motion = result.log.q[kept], result.log.qd[kept], result.qdd[kept]
-    fitted = [
-        (b.q[b.counts], b.qd[b.counts], b.computed["present"][b.counts], b.measured[b.counts])
-        for b in found.blocks
-        if "present" in solvers
-    ]
+    fitted = []
+    if "present" in solvers:
+        q, qd, present, own = valid_samples(found.blocks, "q", "qd", "present", "measured")
+        fitted = [(q, qd, present, own)]
     computed = baseline_torques(solvers, motion, fitted)
     computed["identified"] = (measured + result.computed - result.measured)[kept]
     errors = {column: torques - measured[kept] for column, torques in computed.items()}
