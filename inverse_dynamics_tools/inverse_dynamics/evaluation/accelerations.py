@@ -23,6 +23,8 @@ RULES = {
 }
 
 
+_MOST_SPANS = 500
+
 # Names of the masks of Samples, as files have them.
 MASKS = ("repeated", "non_increasing", "start_transient", "isolated", "kept")
 
@@ -44,15 +46,15 @@ class Samples:
         """How many samples the second metrics leave out."""
         return int((~self.kept).sum())
 
-    def left_out_spans(self, log: JointLog, most: int = 500) -> list[tuple[float, float]]:
+    def left_out_spans(self, log: JointLog) -> list[tuple[float, float]]:
         """When those were: from the first to the last [s] of samples in succession.
 
-        log: all samples. most: of more spans, the ones of the most samples.
+        log: all samples. Of more than 500 spans, those of the most samples.
         """
         import numpy as np  # late: --help needs the rules alone
 
         edges = np.flatnonzero(np.diff(np.concatenate([[True], self.kept, [True]])))
         first, end = edges[::2], edges[1::2]
-        longest = np.sort(np.argsort(first - end, kind="stable")[:most])
+        longest = np.sort(np.argsort(first - end, kind="stable")[:_MOST_SPANS])
         begins, ends = log.time_at(first[longest]), log.time_at(end[longest] - 1)
         return list(zip(begins.tolist(), ends.tolist(), strict=True))

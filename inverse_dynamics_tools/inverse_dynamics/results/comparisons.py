@@ -25,7 +25,6 @@ def write_comparison(
     directory: Path,
     *,
     overwrite: bool = False,
-    title: str = "",
     figures: Sequence[str] = ("png",),
     page: bool = True,
 ) -> None:
@@ -37,7 +36,7 @@ def write_comparison(
 
     check_formats(figures)
     first = comparison.evaluations[0]
-    title = title or f"{first.bag.name}: {' against '.join(comparison.labels)}"
+    title = f"{first.bag.name}: {' against '.join(comparison.labels)}"
     inputs = [path for e in comparison.evaluations for path in (e.bag, *e.robot.files)]
     with written_whole(directory, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
         write_text(target / MARK, json_text(summary(comparison)))
