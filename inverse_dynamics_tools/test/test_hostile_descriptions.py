@@ -105,14 +105,13 @@ SCRIPT = """
 import json, math, resource, sys
 resource.setrlimit(resource.RLIMIT_AS, (6 * 2**30, 6 * 2**30))
 from pathlib import Path
-from inverse_dynamics.robot.descriptions import effort_limits, joint_units
+from inverse_dynamics.robot.descriptions import effort_limits
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.figures.scene import scene_of
 from inverse_dynamics.simulation.model import SimulatedRobot
 
 file, names = Path("arm.urdf"), ("swing",)
 readers = {
-    "units": lambda text: joint_units(file, text, names),
     "limits": lambda text: effort_limits(file, text, names),
     "scene": lambda text: json.dumps(scene_of(text, names, Path()).links, allow_nan=False),
     "simulation": lambda text: SimulatedRobot.from_urdf(text),
@@ -159,7 +158,7 @@ def test_hostile_description_is_refused_in_one_line_or_read(found, case):
             assert "root:" not in error[1]  # of /etc/passwd
 
 
-EVERY = ("units", "limits", "scene", "simulation")
+EVERY = ("limits", "scene", "simulation")
 
 
 # What each must refuse; the others may not care.

@@ -219,11 +219,11 @@ def use(directory, *, page=True):
     from inverse_dynamics.evaluation.comparison import compare
     from inverse_dynamics.report import report_run
     from inverse_dynamics.report.page import render_page
+    from inverse_dynamics.report.tables import evaluation_table
     from inverse_dynamics.results.exports import series_columns
-    from inverse_dynamics.verbs.tables import error_table
 
     read = read_evaluation(directory)
-    error_table(read)
+    evaluation_table(read)
     series_columns(read)
     compare([read, read], ("a", "b"))
     if page:

@@ -5,23 +5,29 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from statistics import fmean
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.base.wording import counted
+from inverse_dynamics.base.wording import counted, solver_name
 from inverse_dynamics.identification.summary import TITLES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.comparison import Comparison
     from inverse_dynamics.evaluation.contacts import Contact, Contacts
-    from inverse_dynamics.evaluation.evaluation import JointError
+    from inverse_dynamics.evaluation.evaluation import Evaluation, JointError
     from inverse_dynamics.evaluation.retiming import Retimed
+    from inverse_dynamics.evaluation.summary import EvaluationSummary
+    from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
     from inverse_dynamics.identification.payload import Payload
     from inverse_dynamics.identification.result import Identification
+
+
+_IN_BAND = "in 95 % band [%]"
 
 
 @dataclass(frozen=True)
@@ -40,28 +46,93 @@ class ReportTable:
         return list(zip(*(aligned(column) for column in zip(*self.rows, strict=True)), strict=True))
 
 
-def joint_table(title: str, errors: Sequence[JointError]) -> ReportTable:
-    """Errors of each joint."""
-    rows = [(e.joint, e.rmse, e.mae, e.bias, e.unit, 100 * e.nrmse, e.r2) for e in errors]
-    return ReportTable(title, ("joint", "RMSE", "MAE", "bias", "unit", "NRMSE [%]", "R²"), rows)
-
-
-def _of_joints(
+def of_joints(
     title: str,
     joints: Sequence[str],
     units: Sequence[str],
     columns: Mapping[str, Floats],
     note: str = "",
-    *,
-    mean: bool = False,
+    means: Collection[str] = (),
 ) -> ReportTable:
-    """A row per joint, of columns (n,) by heading. mean: where all units are one, the last row has the means."""
+    """A row per joint, of columns (n,) by heading. means: columns whose means the last row has, if units are one."""
     values = [column.tolist() for column in columns.values()]
     rows = list(zip(joints, units, *values, strict=True))
-    total = mean and len(set(units)) == 1 and len(units) > 1
+    total = bool(means) and len(set(units)) == 1 and len(units) > 1
     if total:
-        rows.append(("mean", units[0], *(float(column.mean()) for column in columns.values())))
+        last = (float(v.mean()) if name in means else math.nan for name, v in columns.items())
+        rows.append(("mean", units[0], *last))
     return ReportTable(title, ("joint", "unit", *columns), rows, note, total)
+
+
+def joint_table(title: str, errors: Sequence[JointError]) -> ReportTable:
+    """Errors of each joint."""
+    return of_joints(title, [e.joint for e in errors], [e.unit for e in errors], _errors(errors))
+
+
+def _errors(errors: Sequence[JointError]) -> dict[str, Floats]:
+    values = np.array([(e.mae, e.rmse, 100 * e.nrmse, e.bias, e.r2) for e in errors])
+    return dict(zip(("MAE", "RMSE", "NRMSE [%]", "bias", "R²"), values.T, strict=True))
+
+
+def evaluation_table(evaluation: Evaluation) -> ReportTable:
+    """Errors of each joint; where samples are invalid, those over the valid ones, too."""
+    left_out, total = evaluation.samples.left_out, len(evaluation.log)
+    columns, note = _errors(evaluation.errors), ""
+    if left_out:
+        columns["RMSE*"] = np.array([error.rmse for error in evaluation.errors_of_kept])
+        note = f"* over the {total - left_out} valid samples of {total}"
+    if evaluation.coverage is not None:
+        columns[_IN_BAND] = 100 * evaluation.coverage
+    joints = [error.joint for error in evaluation.errors]
+    return of_joints(
+        "", joints, evaluation.units, columns, note, ("MAE", "RMSE", "RMSE*", _IN_BAND)
+    )
+
+
+def robots_table(evaluations: Mapping[str, Evaluation]) -> ReportTable:
+    """Mean over the joints of the root mean square errors, one row per robot."""
+    rows = []
+    for title, evaluation in evaluations.items():
+        units = set(evaluation.units)
+        mean = evaluation.mean_rmse if len(units) == 1 else math.nan
+        shares = [100 * e.nrmse for e in evaluation.errors if not math.isnan(e.nrmse)]
+        share = fmean(shares) if shares else math.nan
+        solver = solver_name(evaluation.robot.plugin)
+        rows.append((title, solver, len(evaluation.log), mean, units.pop(), share))
+    headings = ("robot", "solver", "samples", "mean RMSE", "unit", "mean NRMSE [%]")
+    return ReportTable("", headings, rows)
+
+
+def recordings_table(summaries: Sequence[EvaluationSummary]) -> ReportTable:
+    """Root mean square errors, one row per recording, one column per joint."""
+    first = summaries[0].errors
+    # A name in lines, so that columns are narrow.
+    columns = [f"{error.joint}_{error.unit}".replace("_", "\n") for error in first]
+    one_unit = len({error.unit for error in first}) == 1 and len(first) > 1
+    columns += [f"mean\n{first[0].unit}"] if one_unit else []
+    rows: list[tuple[str | float, ...]] = [
+        (summary.name, *(error.rmse for error in summary.errors), *[summary.mean_rmse] * one_unit)
+        for summary in summaries
+    ]
+    return ReportTable("RMSE", ("recording", *columns), rows)
+
+
+def load_table(result: TrajectoryTorques) -> ReportTable:
+    """Greatest torque of each joint and, where it exceeds the limit, when it first does."""
+
+    def moment(time: float, trajectory: int | None) -> str:
+        return f"{time:.3f} s" + (f" of trajectory {trajectory}" if len(result.times) > 1 else "")
+
+    rows = []
+    for load in result.loads:
+        limited = math.isfinite(load.limit)
+        passed = "-" if limited else "not known"
+        if load.passed_time is not None:
+            passed = f"first at {moment(load.passed_time, load.passed_trajectory)}"
+        limit = f"{load.limit:g} {load.unit}" if limited else "-"
+        peak = f"{load.peak:.3f} {load.unit}"
+        rows.append((load.joint, peak, moment(load.peak_time, load.peak_trajectory), limit, passed))
+    return ReportTable("", ("joint", "peak", "at", "limit", "passes its limit"), rows)
 
 
 def comparison_table(comparison: Comparison) -> ReportTable:
@@ -69,7 +140,7 @@ def comparison_table(comparison: Comparison) -> ReportTable:
     title = f"RMSE of {' and '.join(comparison.labels)}"
     columns = dict(zip(comparison.labels, comparison.rmse, strict=True))
     units = comparison.evaluations[0].units
-    return _of_joints(title, comparison.joint_names, units, columns, mean=True)
+    return of_joints(title, comparison.joint_names, units, columns, means=columns)
 
 
 def held_out_table(
@@ -88,15 +159,15 @@ def held_out_table(
         for column, heading in TITLES.items()
         if column in found.held_out
     }
-    columns["in 95 % band [%]"] = 100 * (found.coverage if coverage is None else coverage)
-    return _of_joints(title, found.joints, found.units, columns, note, mean=True)
+    columns[_IN_BAND] = 100 * (found.coverage if coverage is None else coverage)
+    return of_joints(title, found.joints, found.units, columns, note, means=columns)
 
 
 def contact_table(contacts: Contacts) -> ReportTable:
     """One row per contact."""
     has_force = contacts.wrenches is not None
     force = ("mean force [N]", "peak force [N]", "direction", "unseen directions") * has_force
-    rows = [
+    rows: list[tuple[str | float, ...]] = [
         (
             f"{c.begin:.2f} to {c.end:.2f}"
             + (f"; unknown: {c.unknown:.2f} s" if c.unknown else ""),
@@ -129,7 +200,7 @@ def threshold_table(contacts: Contacts) -> ReportTable:
     rate = found.false_alarms_per_hour
     note = f"thresholds for {rate:g} false alarm{'' if rate == 1 else 's'} per hour"
     title = "Thresholds of each joint"
-    return _of_joints(title, evaluation.joint_names, evaluation.units, columns, note)
+    return of_joints(title, evaluation.joint_names, evaluation.units, columns, note)
 
 
 def payload_table(payload: Payload) -> ReportTable:
@@ -162,7 +233,7 @@ def residual_table(payload: Payload) -> ReportTable:
         "offset": payload.estimate.offset,
     }
     title = "Errors without and with the load"
-    return _of_joints(title, payload.joint_names, payload.evaluation.units, columns)
+    return of_joints(title, payload.joint_names, payload.evaluation.units, columns)
 
 
 def retime_table(result: Retimed) -> ReportTable:
@@ -173,7 +244,7 @@ def retime_table(result: Retimed) -> ReportTable:
         "at limit [% of time]": 100 * result.at_limit,
         "velocity [rad/s, m/s]": np.abs(result.qd).max(axis=0),
     }
-    return _of_joints("Load of each joint", result.joint_names, result.units, columns)
+    return of_joints("Load of each joint", result.joint_names, result.units, columns)
 
 
 _LEAST_PLAIN = 1e-3  # a smaller number has a power of ten

@@ -22,7 +22,7 @@ from inverse_dynamics.base.wording import counted
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import Arm, evaluate
 from inverse_dynamics.evaluation.turns import on_one_turn
-from inverse_dynamics.robot.descriptions import joint_units
+from inverse_dynamics.report.tables import of_joints
 from inverse_dynamics.robot.robots import Robot, load_robot
 from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.errors import SimulationError
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.report.tables import ReportTable
     from inverse_dynamics.simulation.information import Unknowns
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import WaypointTrajectory
@@ -115,9 +116,9 @@ def excite(
             "expected either recordings that are given or a motion for a payload, got both: "
             "recordings of the arm contain no information about a payload"
         )
-    description = description_of(robot)
-    simulated = simulated_robot(robot, description)
-    noise = _band_noise(robot, simulated)
+    simulated = simulated_robot(robot, description_of(robot))
+    arm = Arm(robot)
+    noise = _band_noise(arm, simulated)
     unknowns = options.unknowns(simulated, noise)
     noise_source = "1 % of each effort limit" if noise is None else "95 % band of the robot's model"
     known = np.zeros_like(unknowns.scale)
@@ -148,7 +149,7 @@ def excite(
     return ExcitationResult(
         robot=robot,
         joint_names=robot.joints or simulated.chain.joint_names,
-        units=joint_units(robot.urdf, description, simulated.chain.joint_names),
+        units=arm.units,
         options=options,
         excitation=found,
         deviation=deviation,
@@ -193,6 +194,25 @@ def summary(result: ExcitationResult) -> dict[str, Any]:
         ],
         "notes": result.notes,
     }
+
+
+_AFTER = {"description": "before", "given": "given", "stored": "stored", "motion": "after"}
+
+
+def excitation_table(result: ExcitationResult) -> ReportTable:
+    """Motion of each joint, and uncertainty of its predicted torque before and after."""
+    speed, acceleration, torque = 100 * result.greatest
+    columns = {"from": result.travel[:, 0], "to": result.travel[:, 1], "speed [%]": speed}
+    columns |= {"acc. [%]": acceleration, "torque [%]": torque}
+    columns |= {_AFTER[name]: values for name, values in result.deviation.items()}
+    note = (
+        "speed, acceleration (acc.), torque: greatest values as shares of their limits; then the standard "
+        "deviation of predicted torques, mean over random states within the limits: before any recording"
+        + (", after the given recordings" if "given" in result.deviation else "")
+        + (", after the stored motion for the same time" if "stored" in result.deviation else "")
+        + ", after this motion"
+    )
+    return of_joints("", result.joint_names, result.units, columns, note)
 
 
 def write_excitation(
@@ -272,11 +292,10 @@ def _samples(recording: Evaluation) -> tuple[list[Floats], float]:
     return [array[chosen] for array in arrays], stride * recording.samples.period
 
 
-def _band_noise(robot: Robot, simulated: SimulatedRobot) -> Floats | None:
+def _band_noise(arm: Arm, simulated: SimulatedRobot) -> Floats | None:
     """(n,) N m, standard deviation of the errors of the robot's model, where it states them."""
-    solver = Arm(robot).solver
-    deviation = solver.torque_deviation
-    if deviation is None or tuple(solver.joint_names) != simulated.chain.joint_names:
+    deviation = arm.solver.torque_deviation
+    if deviation is None or arm.joint_names != simulated.chain.joint_names:
         return None
     return np.asarray(deviation / _BAND)
 

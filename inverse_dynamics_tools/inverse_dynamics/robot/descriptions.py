@@ -145,18 +145,6 @@ def fixed_above(link: str, joint_above: Mapping[str, Element]) -> dict[str, list
     return found
 
 
-def joint_units(
-    file: Path | None, description: str, joint_names: tuple[str, ...]
-) -> tuple[str, ...]:
-    """Unit of each joint's torque: N for a prismatic joint of the URDF, else N m.
-
-    file: where the description is from, for errors. Raises RobotError if it isn't XML.
-    """
-    joints = _joints(file, description)
-    prismatic = {j.get("name") for j in joints if j.get("type") == "prismatic"}
-    return tuple("N" if name in prismatic else "N m" for name in joint_names)
-
-
 def effort_limits(file: Path | None, description: str, joint_names: Sequence[str]) -> Floats:
     """(n,) N m (prismatic N) of the URDF; infinite for a joint without one, or with zero.
 

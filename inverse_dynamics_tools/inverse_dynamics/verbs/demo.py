@@ -46,10 +46,10 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.report.tables import comparison_table
+    from inverse_dynamics.report.tables import comparison_table, robots_table
     from inverse_dynamics.results.demo import TITLES, find_recordings, run_demo, summary
     from inverse_dynamics.verbs.screen import Screen, progress_bar, show
-    from inverse_dynamics.verbs.tables import mean_table, on_screen
+    from inverse_dynamics.verbs.tables import on_screen
 
     console = Screen(stderr=arguments.json)
     with progress_bar() as progress:
@@ -62,7 +62,8 @@ def run(arguments: argparse.Namespace) -> None:
             progress=progress,
         )
     out, comparison = demo.directory, demo.comparison
-    lines: list[Line] = [mean_table({TITLES[name]: e for name, e in demo.evaluations.items()})]
+    robots = {TITLES[name]: evaluation for name, evaluation in demo.evaluations.items()}
+    lines: list[Line] = [on_screen(robots_table(robots))]
     if comparison is not None:
         lines += ["UR10, real: gain by identification", on_screen(comparison_table(comparison))]
     lines.append(("note", demo.notes))

@@ -126,9 +126,10 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any]) -> None:
     from inverse_dynamics.data.several_recordings import name_of
+    from inverse_dynamics.report.tables import evaluation_table
     from inverse_dynamics.results.evaluations import PAGE, evaluate_into, metrics
     from inverse_dynamics.verbs.screen import heading, progress_bar, show
-    from inverse_dynamics.verbs.tables import error_table
+    from inverse_dynamics.verbs.tables import on_screen
 
     (bag,) = arguments.bags
     out = arguments.out or Path(f"{name_of(bag)}_{robot.name}")
@@ -147,7 +148,7 @@ def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any
             ("accelerations", evaluation.accelerations.summary),
             ("effort means", evaluation.effort.summary),
             ("note", evaluation.notes),
-            error_table(evaluation),
+            on_screen(evaluation_table(evaluation)),
             ("page", [str(page)] if (page := out / PAGE).is_file() else []),
             ("figure", drawn),
             ("bag", f"{out / 'bag'}: /torques (computed), /torques_gt (measured)"),
@@ -158,9 +159,10 @@ def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any
 
 def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any]) -> None:
     from inverse_dynamics.errors import PartialError
+    from inverse_dynamics.report.tables import recordings_table
     from inverse_dynamics.results.many_evaluations import evaluate_many, failures_text, summary
     from inverse_dynamics.verbs.screen import progress_bar, show, title
-    from inverse_dynamics.verbs.tables import recordings_table
+    from inverse_dynamics.verbs.tables import on_screen
 
     with progress_bar() as progress:
         result = evaluate_many(
@@ -176,7 +178,7 @@ def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, An
     lines: list[Line] = [
         title(robot),
         ("solver", result.summaries[0].plugin),
-        recordings_table(result.summaries),
+        on_screen(recordings_table(result.summaries)),
         ("page", result.directory / "report.html"),
         ("summary", result.directory / "summary.csv"),
         ("results", f"{result.directory}/NAME"),

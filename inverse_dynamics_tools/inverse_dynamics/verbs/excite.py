@@ -108,6 +108,7 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.results.excitations import (
         check_output,
+        excitation_table,
         excite,
         sending_file,
         summary,
@@ -116,7 +117,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.robot.robots import with_changes
     from inverse_dynamics.simulation.excitation import ExcitationOptions
     from inverse_dynamics.verbs.screen import announce, progress_bar, show, title
-    from inverse_dynamics.verbs.tables import excitation_table
+    from inverse_dynamics.verbs.tables import on_screen
 
     robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
     check_output(arguments.out, robot, arguments.given, overwrite=arguments.overwrite)
@@ -150,7 +151,7 @@ def run(arguments: argparse.Namespace) -> None:
             ("note", result.notes),
             ("motion", motion),
             ("noise", result.noise_source),
-            excitation_table(result),
+            on_screen(excitation_table(result)),
             ("written", ", ".join(map(str, files))),
         ],
     )

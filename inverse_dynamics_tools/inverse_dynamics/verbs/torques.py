@@ -61,10 +61,11 @@ def run(arguments: argparse.Namespace) -> None:
     check_output(arguments.trajectory, arguments.out, robot, overwrite=arguments.overwrite)
 
     from inverse_dynamics.evaluation.trajectory_torques import trajectory_torques
+    from inverse_dynamics.report.tables import load_table
     from inverse_dynamics.results.trajectory_torques import summary, write_trajectory_torques
     from inverse_dynamics.robot.solvers import description_notes
     from inverse_dynamics.verbs.screen import progress_bar, show, title
-    from inverse_dynamics.verbs.tables import load_table
+    from inverse_dynamics.verbs.tables import on_screen
 
     with progress_bar() as progress:
         result = trajectory_torques(
@@ -87,7 +88,7 @@ def run(arguments: argparse.Namespace) -> None:
             ("trajectories", f"{len(result.times)}, with {points} together"),
             ("energy", str(result.energy)),
             ("note", notes),
-            load_table(result),
+            on_screen(load_table(result)),
             ("written", arguments.out),
         ],
     )
