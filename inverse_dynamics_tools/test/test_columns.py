@@ -99,6 +99,13 @@ def of(*patterns, numbers=range(7)):
             ["q0", "torque_enable_0", "current_0"],  # both, which read_motion() refuses
         ),
         (of("q{}", "s{}", "tau{}"), PANDA, ["q0", "tau0"]),
+        (of("q{}", "theta{}", "actuator{}_torque"), PANDA, ["q0", "actuator0_torque"]),
+        (of("theta_{}", "qfrc_actuator_{}"), PANDA, ["theta_0", "qfrc_actuator_0"]),
+        (
+            of("$AXIS_ACT A{}", "$TORQUE_AXIS_ACT A{}", numbers=range(1, 8)),
+            PANDA,
+            ["$AXIS_ACT A1", "$TORQUE_AXIS_ACT A1"],
+        ),
         (
             [*of("MsrdJntPos_A{}", "MsrdJntTrq_A{}", "ExtnJntTrq_A{}", numbers=range(1, 8))],
             PANDA,
@@ -153,11 +160,6 @@ def test_what_is_stated_comes_first():
             "",
             "f.csv: time: expected one set of columns, got sim_time, real_time; state the right one, for example: "
             "--columns 'time=sim_time'",
-        ),
-        (
-            ["sec", "usec"],
-            "",
-            "f.csv: time: expected seconds, with or without nanoseconds, got sec and usec; write",
         ),
         (
             ["foo", "bar"],

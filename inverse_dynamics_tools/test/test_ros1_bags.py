@@ -8,7 +8,7 @@ import pytest
 from conftest import joint_state, write_messages
 
 from inverse_dynamics import read_recording
-from inverse_dynamics.data.table_logs import LogFormat
+from inverse_dynamics.data.log_format import LogFormat
 from inverse_dynamics.errors import BagError
 
 rosbag1 = pytest.importorskip("rosbags.rosbag1")

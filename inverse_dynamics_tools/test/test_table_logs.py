@@ -12,8 +12,10 @@ from conftest import JOINTS, motion
 
 from inverse_dynamics import Solver, evaluate, load_robot, read_recording
 from inverse_dynamics.data.array_files import HDF5
+from inverse_dynamics.data.log_format import LogFormat
 from inverse_dynamics.data.recordings import position_ranges
-from inverse_dynamics.data.table_logs import LogFormat, open_table, parts_joined, read_motion
+from inverse_dynamics.data.table_logs import read_motion
+from inverse_dynamics.data.tables import open_table, parts_joined
 from inverse_dynamics.errors import BagError, EvaluationError
 
 HEADER = "time,position.a,velocity.a,effort.a\n"
@@ -243,6 +245,12 @@ def test_a_unit_that_only_the_owner_knows_is_asked_for(file):
         '"t","q1","tau1"\n"0","1","2"\n"0,5","3","4"\n',
         "t,q1,tau1\nms,rad,mNm\n0,1,2000\n500,3,4000\n",
         "stamp.sec,stamp.nanosec,q1,tau1\n7,0,1,2\n7,500000000,3,4\n",
+        "sec,us,q1,tau1\n7,900000,1,2\n8,400000,3,4\n",
+        "time_s,time_ms,q1,tau1\n0,0,1,2\n0.5,500,3,4\n",
+        "millis,q1,tau1\n70,1,2\n570,3,4\n",
+        "Time,q1,tau1\n0.25 sec,1,2\n0.75 sec,3,4\n",
+        "Time,q1,tau1\n31-Jan-2026 23:59:59.750,1,2\n01-Feb-2026 00:00:00.250,3,4\n",
+        "time,q1,tau1\n12:30:00:250,1,2\n12:30:00:750,3,4\n",
         "t,q1,tau1\n0,1,2\n0.25,,7\n0.3,nan,7\n0.4,7,N/A\n0.5,3,4\n0.6,7",
         "Log of an arm\n2 axes,,\n% rate: 2 Hz\n\nt;q1;tau1\ns;rad;Nm\n0;1;2\n0.5;3;4\n",
         "time,joint1_pos,joint1_torque\n2026-01-31T12:30:00,1,2\n2026-01-31T12:30:00.5,3,4\n",
@@ -266,15 +274,21 @@ def test_a_table_is_read_as_programs_write_it(file, text):
 @pytest.mark.parametrize(
     ("name", "content", "expected"),
     [
-        ("log.xlsx", b"PK", r"got \.xlsx; convert it: python -c .*read_excel.*'log\.parquet'"),
-        ("log.h5", b"", r"got \.h5; convert it: python -c .*h5py\.File\('.*log\.h5'\).*'log\.npz'"),
+        (
+            "log.xlsx",
+            b"PK",
+            r"got \.xlsx; convert it: python -c .*read_excel.*log\.xlsx log\.parquet",
+        ),
+        ("log.h5", b"", r"got \.h5; convert it: python -c .*h5py\.File\(.*log\.h5 log\.npz"),
         ("my log.csv.gz", b"", r"convert it: gunzip -k '.*my log\.csv\.gz'"),
+        ("Ann's.h5", b"", r"""python -c ".*" '.*/Ann'"'"'s\.h5' 'Ann'"'"'s'\.npz"""),
         (
             "log.csv",
             b"\x1f\x8b\x80",
             "isn't text in UTF-8.* it is compressed: unpack it with gunzip",
         ),
-        ("log.csv", b"q [\xb0]", "isn't text in UTF-8.*iconv -f LATIN1 -t UTF-8 '.*log.csv'"),
+        ("log.csv", b"q [\xb0]", "isn't text in UTF-8.*iconv -f LATIN1 -t UTF-8 .*log.csv > NEW"),
+        ("a log.csv", b"q [\xb0]", "iconv -f LATIN1 -t UTF-8 '.*a log.csv' > NEW"),
     ],
 )
 def test_what_is_not_read_is_refused_with_the_command_that_converts_it(
@@ -290,15 +304,16 @@ def test_the_command_for_hdf5_keeps_arrays_of_numbers(tmp_path):
     (tmp_path / "h5py.py").write_text(
         "import numpy\n"
         "class File:\n"
-        "    def __init__(self, path): pass\n"
+        '    def __init__(self, path): assert path == "Ann\'s.h5"\n'
         "    def visititems(self, visit):\n"
         "        visit('group', object())\n"
         "        visit('file', numpy.ones(3))\n"
         "        visit('names', numpy.array(['a', 'b'], object))\n"
     )
-    _, option, code = shlex.split(HDF5.format(path="log.h5", stem="log"))
-    subprocess.run([sys.executable, option, code], cwd=tmp_path, check=True)
-    assert open_table(tmp_path / "log.npz").names == ("/file",)
+    names = {"path": shlex.quote("Ann's.h5"), "stem": shlex.quote("Ann's")}
+    _, *arguments = shlex.split(HDF5.format(**names))
+    subprocess.run([sys.executable, *arguments], cwd=tmp_path, check=True)
+    assert open_table(tmp_path / "Ann's.npz").names == ("/file",)
 
 
 def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
@@ -346,11 +361,11 @@ def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
         (HEADER + "1e10,1,2,3\n1e10,1,2,3\n", "expected seconds, got 1e+10; count from"),
         (
             "7,0,base,a,b,1,2,,3,4\n7,5,base,b,a,2,1,,4,3\n",
-            "expected the joints a, b in all messages, as in the first one, got b, a in message 2; record",
+            ":2: expected the joints a, b in all messages, as in the first one, got b, a; record",
         ),
         (
-            "field.name0,field.position0\na,1\nb,2\n",
-            "expected the joints a in all messages, as in the first one, got b in message 2; record",
+            "time,field.name0,field.position0,field.effort0\n0,a,1,1\n1,b,2,2\n",
+            ":3: expected the joints a in all messages, as in the first one, got b; record",
         ),
     ],
 )
@@ -515,6 +530,39 @@ def test_a_table_of_rostopic_has_its_joints_by_name(file):
     np.testing.assert_array_equal(log.q, [[2, 1], [2, 1]])
     np.testing.assert_array_equal(log.effort, [[6, 5], [7, 5]])
     assert log.stamps[1] - log.stamps[0] == pytest.approx(10_000_000, abs=300)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Time,name_0,name_1,position_0,position_1,effort_0,effort_1\n0,b,a,1,2,3,4\n1,b,a,1,2,3,4\n",
+        'time,name,position,effort\n0,"[\'b\', \'a\']","[1, 2]","[3, 4]"\n1,"[\'b\', \'a\']","[1, 2]","[3, 4]"\n',
+    ],
+    ids=["columns", "lists"],
+)
+def test_joints_whose_names_stand_beside_are_in_the_order_of_the_chain(file, text):
+    file.write_text(text)
+    log = read_motion(open_table(file), ("a", "b"), LogFormat(), ("position", "effort")).numbers
+    np.testing.assert_array_equal(log["position"], [[2, 1], [2, 1]])
+    np.testing.assert_array_equal(log["effort"], [[4, 3], [4, 3]])
+
+
+def test_joints_of_parquet_whose_names_stand_beside_are_in_the_order_of_the_chain(tmp_path):
+    pa, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    file = tmp_path / "states.parquet"
+    columns = {"time": [0.0, 0.1], "effort": [[3.0, 4.0]] * 2}
+    columns |= {kind: [[1.0, 2.0]] * 2 for kind in ("position", "velocity")}
+    parquet.write_table(pa.table({**columns, "name": [["b", "a"]] * 2}), file)
+    np.testing.assert_array_equal(read_recording(file, ("a", "b")).q, [[2, 1], [2, 1]])
+    parquet.write_table(pa.table({**columns, "name": [["b", "a"], ["a", "b"]]}), file)
+    with pytest.raises(BagError, match="name: expected the joints b, a in all messages"):
+        read_recording(file, ("a", "b"))
+
+
+def test_names_that_pandas_counts_are_no_numbers(file):
+    file.write_text("0,1,2,3\n0,1,2,3\n0.1,4,5,6\n")
+    log = read_recording(file, ("a",), form=LogFormat("time=1, q=2-2, qd=3-3, effort=4-4"))
+    np.testing.assert_array_equal(log.q[:, 0], [1, 4])
 
 
 def test_rows_out_of_order_are_sorted(file):

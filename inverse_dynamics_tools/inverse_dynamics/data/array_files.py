@@ -13,6 +13,7 @@ that meta/info.json states: `observation.state.shoulder_pan.pos`.
 from __future__ import annotations
 
 import json
+import shlex
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +23,8 @@ import numpy as np
 
 from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.base.wording import listed
+from inverse_dynamics.data.vocabulary import EFFORT, POSITION, VELOCITY
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
@@ -33,8 +36,9 @@ if TYPE_CHECKING:
 _INFO = "meta/info.json"  # of a LeRobot data set
 # The command that makes an .npz file of one in HDF5. With `/` before them, no name is that of an argument of savez().
 HDF5 = (
-    "python -c \"import h5py, numpy; d = {{}}; h5py.File('{path}').visititems(lambda k, v: d.update({{'/' + k: v[()]}})"
-    " if hasattr(v, 'dtype') and v.dtype.kind in 'fiub' else None); numpy.savez('{stem}.npz', **d)\""
+    'python -c "import h5py, numpy, sys; d = {{}}; h5py.File(sys.argv[1]).visititems(lambda k, v: d.update('
+    "{{'/' + k: v[()]}}) if hasattr(v, 'dtype') and v.dtype.kind in 'fiub' else None); numpy.savez(sys.argv[2], **d)\" "
+    "{path} {stem}.npz"
 )
 
 
@@ -110,8 +114,8 @@ def _of_parquet(path: Path) -> Iterator[tuple[str, Any]]:
 
     root = path if path.is_dir() else path.absolute().parent.parent.parent
     files = sorted(path.glob("data/*/*.parquet")) if path.is_dir() else [path]
-    labels = _labels(root / _INFO)
     table = pa.concat_tables([parquet.read_table(file, partitioning=None) for file in files])
+    labels = _labels(root / _INFO) | _joints_beside(table, path)
     for name, column in zip(table.column_names, table.columns, strict=True):
         if pa.types.is_timestamp(column.type):
             yield f"{name}_ns", column.cast(pa.timestamp("ns")).cast(pa.int64()).to_numpy()
@@ -125,6 +129,26 @@ def _of_parquet(path: Path) -> Iterator[tuple[str, Any]]:
                     yield name, rows
         else:
             yield name, column.to_numpy()
+
+
+def _joints_beside(table: Any, path: Path) -> dict[str, list[str]]:
+    """The joints whose names a list beside those of joint states holds. Raises BagError: they change."""
+    labels: dict[str, list[str]] = {}
+    for name, column in zip(table.column_names, table.columns, strict=True):
+        if (
+            name.endswith("name")
+            and f"{column.type}".startswith("list<")
+            and column.type.value_type == "string"
+        ):
+            first, *others = {tuple(joints): None for joints in column.to_pylist()}
+            if others:
+                raise BagError(
+                    f"{path}: {name}: expected the joints {listed(first)} in all messages, as in the first one, got "
+                    f"{listed(others[0])}; write one table per arm"
+                )
+            before = name.removesuffix("name")
+            labels |= {f"{before}{kind}": [*first] for kind in (POSITION, VELOCITY, EFFORT)}
+    return labels
 
 
 def _labels(info: Path) -> dict[str, list[str]]:
@@ -153,7 +177,7 @@ def _of_mat(path: Path) -> Iterator[tuple[str, Any]]:
     try:
         found = loadmat(path, squeeze_me=True, struct_as_record=False)
     except NotImplementedError as error:
-        command = HDF5.format(path=path, stem=path.stem)
+        command = HDF5.format(path=shlex.quote(f"{path}"), stem=shlex.quote(path.stem))
         raise ValueError(f"it is of version 7.3; save it with '-v7', or: {command}") from error
     for name, value in found.items():
         if not name.startswith("__"):

@@ -20,95 +20,26 @@ from itertools import takewhile
 from typing import TYPE_CHECKING, NamedTuple
 
 from inverse_dynamics.base.wording import listed, shown
+from inverse_dynamics.data.times import part_of_second, time_columns
+from inverse_dynamics.data.vocabulary import (
+    BARE,
+    CURRENT,
+    EFFORT,
+    KEYS,
+    POSITION,
+    QUANTITIES,
+    TIME,
+    UNITS_OF_NAMES,
+    foreign,
+    quantity_of,
+    unit_of,
+    words_of,
+    words_of_numbered,
+)
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-
-TIME, POSITION, VELOCITY, ACCELERATION = "time", "position", "velocity", "acceleration"
-EFFORT, CURRENT = "effort", "current"
-QUANTITIES = (POSITION, VELOCITY, ACCELERATION, EFFORT, CURRENT)
-
-# Words that say a quantity. Those of the second row do so only beside no word of the first row:
-# `current_q_0` and `state_tau_0` are a position and an effort.
-_WORDS = {
-    POSITION: "position positions pos q angle angles theta jpos qpos",
-    VELOCITY: "velocity velocities vel qd dq qdot speed speeds omega jvel qvel",
-    ACCELERATION: "acceleration accelerations acc accel qdd ddq qddot qacc",
-    EFFORT: "effort efforts eff torque torques torq tau trq moment moments",
-}
-_WEAK_WORDS = {
-    CURRENT: "current currents cur curr i iq amps ampere amperes",
-    POSITION: "state",
-    VELOCITY: "v",
-    ACCELERATION: "a",
-}
-# The first ones are preferred.
-_TIME = "time t timestamp timestamps stamp stamps ts secs seconds sec duration"
-_TIME_WORDS = (*_TIME.split(),)
-# Beside these words a quantity stays what it is: a name that has fewer others is preferred.
-_NEUTRAL_WORDS = (
-    "actual act measured meas msrd joint joints jnt j axis a state states robot arm field data observation header "
-    "cont abs rec real elapsed sim sample relative from start fb feedback"
-)
-_NEUTRAL = frozenset(_NEUTRAL_WORDS.split())
-# Not what the arm did, or not what its motors did.
-_PASSED_OVER = (
-    "target desired des ref reference cmd command commanded goal setpoint planned action ext extn external error err "
-    "limit limits max min std temperature temp tcp ee cartesian cart tool wrench model predicted"
-)
-_OTHER = frozenset(_PASSED_OVER.split())
-
-# Factors to SI units.
-UNITS = {
-    "deg": 0.017453292519943295,
-    "rad": 1.0,
-    "mrad": 1e-3,
-    "rpm": 0.10471975511965977,
-    "m": 1.0,
-    "cm": 1e-2,
-    "mm": 1e-3,
-    "nm": 1.0,
-    "knm": 1e3,
-    "ncm": 1e-2,
-    "nmm": 1e-3,
-    "mnm": 1e-3,
-    "kgfcm": 0.0980665,
-    "a": 1.0,
-    "ma": 1e-3,
-    "s": 1.0,
-    "ms": 1e-3,
-    "us": 1e-6,
-    "ns": 1e-9,
-}
-_SPELLINGS = {"degrees": "deg", "degree": "deg", "sec": "s", "secs": "s", "seconds": "s"}
-# Units that words of a name may state; `a`, `m` and `s` alone are too often something else.
-_UNITS_OF_NAMES = {
-    TIME: ("ms", "us", "ns", "s", "sec", "secs", "seconds"),
-    POSITION: ("deg", "degree", "degrees", "rad", "mrad", "mm", "cm"),
-    VELOCITY: ("deg", "degree", "degrees", "rad", "mrad", "rpm", "mm", "cm"),
-    ACCELERATION: ("deg", "degree", "degrees", "rad", "mrad", "mm", "cm"),
-    EFFORT: ("nm", "knm", "ncm", "nmm", "mnm", "kgfcm"),
-    CURRENT: ("ma",),
-}
-_PER_TIME = frozenset({"per", "s", "s2", "sec", "second"})
-# In names without any other word than neutral ones, `joint_1 [deg]`, units say the quantity, or the joint alone.
-# The first ones come first.
-_BARE_WORDS = {
-    EFFORT: frozenset(_UNITS_OF_NAMES[EFFORT]),
-    VELOCITY: frozenset({"rpm"}),
-    CURRENT: frozenset(_UNITS_OF_NAMES[CURRENT]),
-    POSITION: frozenset(("joint", "joints", "jnt", "j", "axis", *_UNITS_OF_NAMES[POSITION])),
-}
-_BARE = _NEUTRAL.union({"*"}, _PER_TIME, *_BARE_WORDS.values())
-# Units whose factor only the owner knows.
-UNKNOWN_UNITS = frozenset({"percent", "permille", "counts", "ticks", "increments", "pulses"})
-
-_KEYS = {
-    **{name: name for name in (TIME, *_WORDS, CURRENT)},
-    **{"t": TIME, "q": POSITION, "qd": VELOCITY, "dq": VELOCITY, "qdd": ACCELERATION},
-    **{"ddq": ACCELERATION, "tau": EFFORT, "torque": EFFORT, "i": CURRENT},
-}
 
 
 class Family(NamedTuple):
@@ -118,14 +49,14 @@ class Family(NamedTuple):
     columns: tuple[str, ...]  # in the order of the joints
     unit: str  # that the names state; "": none
 
-    @property
-    def pattern(self) -> str:
-        """What the names have in common, with `*` in the place of the joint; the name if it's one."""
-        if len(self.columns) == 1:
-            return self.columns[0]
-        start = _common_start(self.columns)
-        end = _common_start([name[len(start) :][::-1] for name in self.columns])[::-1]
-        return f"{start}*{end}"
+
+def pattern_of(names: Sequence[str]) -> str:
+    """What the names have in common, with `*` in the place of the joint; the name if it's one."""
+    if len(names) == 1:
+        return names[0]
+    start = _common_start(names)
+    end = _common_start([name[len(start) :][::-1] for name in names])[::-1]
+    return f"{start}*{end}"
 
 
 def _common_start(names: Sequence[str]) -> str:
@@ -187,16 +118,16 @@ def match_columns(
     unclear: dict[str, list[Family]] = {}
     if time:
         _known(names, time, where, f"{TIME}=")
-        columns[TIME] = (time[0], *_nanoseconds_beside(time[0], names, where))
-        units[TIME] = _unit(TIME, _words(time[0]))
-    if len(time) > 1:
+        columns[TIME] = (time[0], *part_of_second(time[0], names))
+        units[TIME] = unit_of(TIME, words_of(time[0]))
+    if {*time} - {*columns.get(TIME, ())}:
         unclear[TIME] = [Family((), (name,), "") for name in time]
     found = _families(names, joints)
     sure_efforts = EFFORT in given
     for quantity in quantities:
         if quantity in given:
             columns[quantity] = _matching(given[quantity], names, joints, where)
-            units[quantity] = _unit(quantity, _words(columns[quantity][0]))
+            units[quantity] = unit_of(quantity, words_of(columns[quantity][0]))
             continue
         if quantity == (EFFORT if CURRENT in given else CURRENT if sure_efforts else ""):
             continue
@@ -215,67 +146,15 @@ def match_columns(
 def named_positions(names: Sequence[str], joints: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Columns of positions, and the units in their names, of those joints whose names they hold."""
     found: dict[str, tuple[str, str]] = {}
-    called = {_words(joint): joint for joint in joints}
+    called = {words_of(joint): joint for joint in joints}
     for name in names:
         for _, pattern, joint in _places(name, called):
-            if isinstance(joint, str) and "*" in pattern and _quantity(pattern) == POSITION:
-                found.setdefault(joint, (name, _unit(POSITION, pattern)))
+            if isinstance(joint, str) and "*" in pattern and quantity_of(pattern) == POSITION:
+                found.setdefault(joint, (name, unit_of(POSITION, pattern)))
     return found
 
 
 # ---- what names say ------------------------------------------------------------------------------
-
-
-def _words(name: str) -> tuple[str, ...]:
-    """Words and numbers of a name: `Joint1_Pos` has joint, 1, pos."""
-    name = re.sub(r"(?<![A-Za-z])(mNm|kNm|mA|q_?[dD]{1,2}ot)(?![a-z])", _one_word, name)
-    name = name.replace("%", " percent ").replace("°", " deg ")
-    apart = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[^\W\d_])(?=\d)|(?<=\d)(?=[^\W\d_])", " ", name)
-    return tuple(re.findall(r"[^\W\d_]+|\d+", apart.lower()))
-
-
-def _one_word(found: re.Match[str]) -> str:
-    return found[0].lower().replace("_", "")
-
-
-def _quantity(words: Sequence[str]) -> str | None:
-    """What the words say; None: nothing, or another thing than a measured quantity."""
-    if _OTHER.intersection(words):
-        return None
-    for vocabulary in (_WORDS, _WEAK_WORDS):
-        said = {
-            kind for kind, text in vocabulary.items() if not set(text.split()).isdisjoint(words)
-        }
-        if said:
-            return said.pop() if len(said) == 1 else None
-    return _quantity_of_bare(words)
-
-
-def _quantity_of_bare(words: Sequence[str]) -> str | None:
-    """What a unit beside a joint's name or number says, or a word for the joint alone."""
-    if "*" not in words or not _BARE.issuperset(words):
-        return None
-    if not _PER_TIME.isdisjoint(words):  # `s` alone may be anything
-        return None if set(_UNITS_OF_NAMES[POSITION]).isdisjoint(words) else VELOCITY
-    return next((kind for kind, known in _BARE_WORDS.items() if known & {*words}), None)
-
-
-def _unit(quantity: str, words: Sequence[str]) -> str:
-    known = UNKNOWN_UNITS.union(_UNITS_OF_NAMES[quantity])
-    found = [word for word in words if word in known]
-    unit = _SPELLINGS.get(found[-1], found[-1]) if found else ""
-    return "" if UNITS.get(unit) == 1.0 else unit
-
-
-def _rank(kind: int, quantity: str, words: Sequence[str]) -> tuple[int, ...]:
-    """Fewest foreign words come first, then fewest neutral ones."""
-    said = {*_WORDS.get(quantity, "").split(), *_WEAK_WORDS.get(quantity, "").split(), "*"}
-    others = [
-        word
-        for word in words
-        if word not in said and word not in _UNITS_OF_NAMES[quantity] and word not in _PER_TIME
-    ]
-    return kind, sum(word not in _NEUTRAL for word in others), len(others)
 
 
 def _families(names: Sequence[str], joints: Sequence[str]) -> dict[str, list[Family]]:
@@ -291,16 +170,16 @@ def _families(names: Sequence[str], joints: Sequence[str]) -> dict[str, list[Fam
         order: Sequence[str | int] = numbers if kind == 2 else joints
         complete = len(columns) == len(joints) and (kind < 2 or numbers[0] in (0, 1))
         complete = complete and (kind < 2 or numbers[-1] - numbers[0] == len(joints) - 1)
-        if complete and (quantity := _quantity(pattern)):
+        if complete and (quantity := quantity_of(pattern)):
             ordered = tuple(columns[key] for key in order)
-            rank, unit = _rank(kind, quantity, pattern), _unit(quantity, pattern)
+            rank, unit = (kind, *foreign(quantity, pattern)), unit_of(quantity, pattern)
             found[quantity].append(Family(rank, ordered, unit))
     return found
 
 
 def _called(joints: Sequence[str]) -> dict[tuple[str, ...], str]:
     """Words by which a column may name a joint: `shoulder_pan` or `ur_shoulder_pan_joint`."""
-    full = {joint: _words(joint) for joint in joints}
+    full = {joint: words_of(joint) for joint in joints}
     shared = set.intersection(*map(set, full.values())) if len(joints) > 1 else set()
     short = {j: tuple(w for w in words if w not in shared) for j, words in full.items()}
     says = all(any(map(str.isalpha, words)) for words in short.values())
@@ -315,10 +194,10 @@ def _places(
     """Where a column's name may have a joint: kind (0 exactly, 1 by name, 2 by number), the rest, joint."""
     joints = set(called.values())
     quantity, _, joint = name.partition(".")
-    if joint in joints and quantity in _KEYS:
+    if joint in joints and quantity in KEYS:
         yield 0, (quantity, "*"), joint
         return
-    words = _words(name)
+    words = words_of(name)
     named = [
         (len(own), at, joint)
         for own, joint in called.items()
@@ -328,11 +207,12 @@ def _places(
     if named:
         size, at, joint = max(named)
         rest = (*words[:at], "*", *words[at + size :])
-        if _quantity(rest):
+        if quantity_of(rest):
             yield 1, rest, joint
             return
-    if len(joints) == 1 and (said := _quantity(words)) and not _rank(1, said, words)[1]:
+    if len(joints) == 1 and (said := quantity_of(words)) and not foreign(said, words)[0]:
         yield 1, words, joints.pop()
+    words = words_of_numbered(name)
     for at, word in enumerate(words):
         if word.isdecimal():
             yield 2, (*words[:at], "*", *words[at + 1 :]), int(word)
@@ -340,10 +220,10 @@ def _places(
 
 def quantities_named(names: Sequence[str], file: str) -> set[str]:
     """Quantities that any of the names says, or the file's name together with it."""
-    words = [tuple("*" if w.isdecimal() else w for w in _words(name)) for name in names]
-    telling = [each for each in words if not _BARE.issuperset(each)]
-    for some in (telling, [(*_words(file), *each) for each in words], words):
-        found = {kind for each in some if (kind := _quantity(each))}
+    words = [tuple("*" if w.isdecimal() else w for w in words_of_numbered(n)) for n in names]
+    telling = [each for each in words if not BARE.issuperset(each)]
+    for some in (telling, [(*words_of(file), *each) for each in words], words):
+        found = {kind for each in some if (kind := quantity_of(each))}
         if found:
             return found
     return set()
@@ -357,41 +237,10 @@ def numbered(names: Sequence[str]) -> dict[str, Family]:
             sets[kind, pattern].append(name)
     found: dict[str, Family] = {}
     for (kind, pattern), columns in sets.items():
-        if quantity := _quantity(pattern):
-            family = Family(_rank(kind, quantity, pattern), (*columns,), "")
+        if quantity := quantity_of(pattern):
+            family = Family((kind, *foreign(quantity, pattern)), (*columns,), "")
             found[quantity] = min(found.get(quantity, family), family)
     return found
-
-
-def time_columns(names: Sequence[str]) -> list[str]:
-    """Columns that are as good as any for the time: of the fewest words, of the first of _TIME_WORDS."""
-    known = {*_TIME_WORDS, *_UNITS_OF_NAMES[TIME]}
-    ranked = defaultdict(list)
-    for name in names:
-        words = [word for word in _words(name) if word not in _NEUTRAL]
-        if known.issuperset(words) and (said := [w for w in _TIME_WORDS if w in words]):
-            ranked[len(_words(name)), _TIME_WORDS.index(said[0])].append(name)
-    return [*dict.fromkeys(ranked[min(ranked)])] if ranked else []
-
-
-def _nanoseconds_beside(time: str, names: Sequence[str], where: str) -> list[str]:
-    """`stamp.nanosec`, which belongs to `stamp.sec`. Raises BagError where it is another part of a second."""
-    *rest, unit = _words(time) or ("",)
-    if unit not in ("sec", "secs", "seconds"):
-        return []
-    parts = {
-        prefix: name
-        for name in names
-        for prefix in ("n", "nano", "u", "micro", "m", "milli")
-        if _words(name) in [(*rest, prefix + word) for word in ("sec", "secs", "seconds")]
-    }
-    nanoseconds = [parts.pop(prefix) for prefix in ("n", "nano") if prefix in parts]
-    if parts and not nanoseconds:
-        raise BagError(
-            f"{where}: time: expected seconds, with or without nanoseconds, got {time} and "
-            f"{listed([*parts.values()])}; write time as one column: {time} plus its fractions"
-        )
-    return nanoseconds[:1]
 
 
 def _chosen_time(pattern: str, names: Sequence[str]) -> list[str]:
@@ -409,7 +258,9 @@ def _ambiguous(where: str, unclear: dict[str, list[Family]]) -> BagError:
         f"{kind}: expected one set of columns, got {listed([first_to_last(f.columns) for f in families])}"
         for kind, families in unclear.items()
     )
-    first = ", ".join(f"{kind}={families[0].pattern}" for kind, families in unclear.items())
+    first = ", ".join(
+        f"{kind}={pattern_of(families[0].columns)}" for kind, families in unclear.items()
+    )
     return BagError(f"{where}: {kinds}; state the right one, for example: --columns '{first}'")
 
 
@@ -427,13 +278,13 @@ def _refuse_incomplete(
 def _joints_of(names: Sequence[str], given: dict[str, str]) -> tuple[str, ...]:
     """The joints that columns QUANTITY.JOINT name, else the numbers of the largest set of positions."""
     split = [name.partition(".") for name in names]
-    named = dict.fromkeys(joint for kind, _, joint in split if joint and kind in _UNITS_OF_NAMES)
+    named = dict.fromkeys(joint for kind, _, joint in split if joint and kind in UNITS_OF_NAMES)
     if named and POSITION not in given:
         return tuple(named)
     counts = defaultdict(set)
     for name in names:
         for kind, pattern, number in _places(name, {}):
-            if kind == 2 and _quantity(pattern) == POSITION:
+            if kind == 2 and quantity_of(pattern) == POSITION:
                 counts[pattern].add(number)
     largest = max(map(len, counts.values()), default=0)
     return tuple(map(str, range(largest)))
@@ -457,21 +308,21 @@ def listed_columns(names: Sequence[str], most: int = 40) -> str:
 
 def quantity_named(key: str, where: str) -> str:
     """The quantity that a key means. Raises BagError."""
-    if key not in _KEYS:
-        raise BagError(f"{where}: expected one of {', '.join(_KEYS)}, got {shown(key)}")
-    return _KEYS[key]
+    if key not in KEYS:
+        raise BagError(f"{where}: expected one of {', '.join(KEYS)}, got {shown(key)}")
+    return KEYS[key]
 
 
 def stated_columns(text: str, where: str) -> Iterator[tuple[str, str]]:
     """Quantities and patterns of `KEY=PATTERN, ...`."""
     for part in filter(None, map(str.strip, text.split(","))):
         key, equals, pattern = map(str.strip, part.partition("="))
-        if key not in _KEYS or not equals or not pattern:
+        if key not in KEYS or not equals or not pattern:
             raise BagError(
-                f"{where}: columns: expected KEY=PATTERN with a KEY of {', '.join(_KEYS)}, got {shown(part)}; for "
+                f"{where}: columns: expected KEY=PATTERN with a KEY of {', '.join(KEYS)}, got {shown(part)}; for "
                 "example: time=t, q=q*, qd=dq*, effort=tau*"
             )
-        yield _KEYS[key], pattern
+        yield KEYS[key], pattern
 
 
 def _matching(
@@ -498,7 +349,7 @@ def _of_wildcard(pattern: str, names: Sequence[str], joints: Sequence[str]) -> l
     form = re.compile("(.+)".join(map(re.escape, pattern.split("*", 1))))
     fits = {found[1]: name for name in names if (found := form.fullmatch(name))}
     called = _called(joints)
-    named = {called.get(_words(key)): name for key, name in fits.items()}
+    named = {called.get(words_of(key)): name for key, name in fits.items()}
     if named.keys() >= {*joints}:
         return [named[joint] for joint in joints]
     numbered = sorted((int(key), name) for key, name in fits.items() if key.isdecimal())

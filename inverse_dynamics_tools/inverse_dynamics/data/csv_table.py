@@ -14,17 +14,16 @@ from __future__ import annotations
 
 import csv
 import os
-import re
+import shlex
 from contextlib import suppress
-from datetime import datetime
 from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
 
 from inverse_dynamics.base.decimals import ASCII_SPACE, NOT_FINITE, decimal
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.base.wording import counted, harmless, shown
-from inverse_dynamics.data.columns import time_columns
+from inverse_dynamics.base.wording import counted, harmless, listed, shown
+from inverse_dynamics.data.times import seconds_of, time_columns
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
@@ -37,9 +36,6 @@ if TYPE_CHECKING:
 _SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".log", ".asc")
 _COMMENT = ("#", "% ")
 _MOST_ABOVE = 50  # lines before the first row that aren't comments
-_DAY = 86400.0  # s
-_DATE = re.compile(r"([0-9]{4}-[0-9]{2}-[0-9]{2})[T ]")
-_CLOCK = re.compile(r"([0-9]{1,2}:[0-9]{2}:[0-9]{2})([.,][0-9]+)?(Z|[+-][0-9]{2}:[0-9]{2})?")
 _EMPTY = frozenset(("", "nan", "-nan", "na", "n/a", "none", "null"))
 _UNPACKED_BY = {b"\x1f\x8b": "gunzip", b"PK\x03\x04": "unzip"}  # by the first bytes
 _BLOCK = 2**20  # characters read together
@@ -75,7 +71,7 @@ class CsvTable:
                     f"{self.path}:{number}: expected a header line of at most {_LONGEST_HEADER} "
                     "characters, got a longer one; is it a table of numbers?"
                 )
-            if _is_row(text):
+            if _is_row(text) and (plain or not _counts(_filled_fields(text))):
                 self._lines_before = number - 1
                 return [line for _, line in lines], text.strip("\r\n")
             if not text.isspace():
@@ -89,7 +85,7 @@ class CsvTable:
     def _name_columns(self, above: list[str], row: str) -> None:
         """Find the names: in the last line that has as many fields as the row, but for one of units below it."""
         comments = [text.lstrip("#% ").strip() for text in above if text.startswith(_COMMENT)]
-        plain = [text for text in above if not text.startswith(_COMMENT)]
+        plain = [t for t in above if not (t.startswith(_COMMENT) or _counts(_filled_fields(t)))]
         fitting = [text for text in plain if _fits(text, row)][-2:]
         fitting = fitting or [text for text in comments if _fits(text, row)][-1:]
         found = fitting or plain[-1:] or comments[-1:]
@@ -105,7 +101,8 @@ class CsvTable:
                 for name, text in zip(names, fields, strict=True)
                 for each in _cells(name, text)
             ]
-        fields = self._fields(row)
+        fields = self.first = self._fields(row)
+        self.same: Sequence[int] = ()  # columns of joints' names: what they hold must not change
         columns = len(fields) - (not fields[-1].strip()) if row else len(names)
         self.unnamed = ""  # why the file doesn't name its columns
         if not found:
@@ -124,7 +121,6 @@ class CsvTable:
     def read(self, columns: Sequence[str], progress: Progress = no_progress) -> Floats:
         """(N, columns) numbers, all of them finite. Raises BagError."""
         self.incomplete = 0
-        self._times_of_day: set[int] = set()
         where = [self.names.index(name) for name in columns]
         size = self.path.stat().st_size
         blocks = [np.empty((0, len(columns)))]
@@ -141,11 +137,7 @@ class CsvTable:
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise self._unreadable(error) from error
         progress("reading", size, size)
-        numbers = np.concatenate(blocks)
-        for k, column in enumerate(where):
-            if column in self._times_of_day:  # beyond midnight they restart
-                numbers[1:, k] += _DAY * np.cumsum(np.diff(numbers[:, k]) < -_DAY / 2)
-        return numbers
+        return np.concatenate(blocks)
 
     def rows(self) -> Iterator[list[str]]:
         """Fields of each row, as they are. Raises BagError."""
@@ -180,8 +172,9 @@ class CsvTable:
     def _numbers(self, lines: list[str], first: int, where: list[int]) -> Floats:
         """Numbers of complete rows; first: the number of the first line in the file."""
         rows = [line for line in lines if not line.isspace()]
-        widths = {len(line.split(self._delimiter)) for line in rows}
-        if widths == {len(self.names)} and all(map(str.isascii, rows)):
+        split = [line.split(self._delimiter) for line in rows]
+        plain = {*map(len, split)} == {len(self.names)} and all(map(str.isascii, rows))
+        if plain and all(fields[k] == self.first[k] for k in self.same for fields in split):
             if self._delimiter != ",":
                 rows = [line.replace(",", ".") for line in rows]
             with suppress(ValueError):  # an empty field, or none of a number
@@ -204,6 +197,12 @@ class CsvTable:
                 f"{self.path}:{line}: expected {counted(expected, 'column')}, as the header has, got "
                 f"{len(fields)}; is the file cut off?"
             )
+        joints, found = ([row[k].strip(" '") for k in self.same] for row in (self.first, fields))
+        if joints != found:
+            raise BagError(
+                f"{self.path}:{line}: expected the joints {listed(joints)} in all messages, as in the first one, got "
+                f"{listed(found)}; record one topic per arm, or a recording of ROS"
+            )
         return [self._number(fields[column], line, column) for column in where]
 
     def _number(self, text: str, line: int, column: int) -> float | None:
@@ -217,9 +216,7 @@ class CsvTable:
                 return number
             finite = " finite"
         with suppress(ValueError):
-            if not _DATE.match(text):
-                self._times_of_day.add(column)
-            return _seconds(text)
+            return seconds_of(text)
         raise BagError(
             f"{self.path}:{line}: column {column + 1} ({harmless(self.names[column])}): expected a{finite} "
             f"number, got {shown(text)}"
@@ -239,7 +236,8 @@ class CsvTable:
         with self.path.open("rb") as file:
             start = file.read(4)
         code = "UTF-16" if start[:2] in (b"\xff\xfe", b"\xfe\xff") else "LATIN1"
-        convert = f"if it is text, convert it: iconv -f {code} -t UTF-8 '{self.path}' > NEW.csv"
+        path = shlex.quote(f"{self.path}")
+        convert = f"if it is text, convert it: iconv -f {code} -t UTF-8 {path} > NEW.csv"
         if program := next((p for magic, p in _UNPACKED_BY.items() if start.startswith(magic)), ""):
             convert = f"it is compressed: unpack it with {program}"
         return BagError(
@@ -247,24 +245,22 @@ class CsvTable:
         )
 
 
-def _seconds(text: str) -> float:
-    """Seconds of a date, `2026-01-31T12:30:00.5`, since 1970, or of a time of day. Raises ValueError."""
-    date = _DATE.match(text)
-    clock = _CLOCK.fullmatch(text, date.end() if date else 0)
-    if not clock:
-        raise ValueError(text)
-    day, zone = date[1] if date else "1970-01-01", (clock[3] or "Z").replace("Z", "+00:00")
-    whole = datetime.fromisoformat(f"{day}T{clock[1].zfill(8)}{zone}")
-    return whole.timestamp() + float(f"0{clock[2] or '.0'}".replace(",", "."))
-
-
 def _is_row(text: str) -> bool:
     """Whether more fields hold numbers, or say that there is none, than words, and none is a name of time."""
-    fields = [field.strip(' "\r\n') for field in text.split(_delimiter(text))]
-    fields = [field for field in fields if field]
+    fields = _filled_fields(text)
     numbers = _numbers_in(fields) + sum(field.lower() in _EMPTY for field in fields)
     named = time_columns([*fields[:1], *(field for field in fields if len(field) > 1)])
     return 2 * numbers > len(fields) and not named
+
+
+def _filled_fields(text: str) -> list[str]:
+    fields = [field.strip(' "\r\n') for field in text.split(_delimiter(text))]
+    return [field for field in fields if field]
+
+
+def _counts(fields: Sequence[str]) -> bool:
+    """Whether these are the names that pandas gives to columns without any: 0, 1, 2, ..."""
+    return len(fields) > 3 and [*fields] == [*map(str, range(len(fields)))]
 
 
 def _fits(header: str, row: str) -> bool:

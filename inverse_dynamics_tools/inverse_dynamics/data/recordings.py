@@ -5,7 +5,7 @@
 
 rosbag2 recordings of sensor_msgs/JointState (bags.py) or trajectory_msgs/JointTrajectory
 (joint_trajectories.py), ROS 1 recordings (ros1_bags.py), and tables: .csv, .tsv, .txt, .dat, .log,
-.asc, .parquet, .npz, .npy, .mat, data sets of LeRobot, arrays by name (table_logs.py).
+.asc, .parquet, .npz, .npy, .mat, data sets of LeRobot, arrays by name (tables.py, table_logs.py).
 """
 
 from __future__ import annotations
@@ -20,17 +20,12 @@ import numpy as np
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data import bags, joint_trajectories
 from inverse_dynamics.data.array_files import HDF5
-from inverse_dynamics.data.columns import ACCELERATION, EFFORT, POSITION, VELOCITY
 from inverse_dynamics.data.joint_log import JointLog, check_clock
+from inverse_dynamics.data.log_format import PLAIN, LogFormat
 from inverse_dynamics.data.ros1_bags import is_ros1_bag, read_ros1_log
-from inverse_dynamics.data.table_logs import (
-    PLAIN,
-    LogFormat,
-    is_table,
-    open_table,
-    read_named_positions,
-    read_table_log,
-)
+from inverse_dynamics.data.table_logs import read_named_positions, read_table_log
+from inverse_dynamics.data.tables import is_table, open_table
+from inverse_dynamics.data.vocabulary import ACCELERATION, EFFORT, POSITION, VELOCITY
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
@@ -42,17 +37,19 @@ if TYPE_CHECKING:
     from inverse_dynamics.data.joint_log import Clock
 
 _PUBLISHED_BY = 1000  # messages: a joint that none of them has isn't published
-_PANDAS = "python -c \"import pandas; pandas.read_{}.to_parquet('{}.parquet')\""
+_PANDAS = (
+    'python -c "import pandas, sys; pandas.read_%s.to_parquet(sys.argv[2])" {path} {stem}.parquet'
+)
 _CONVERTED_BY = {  # what isn't read here, by commands that make something of it that is
-    ".xlsx": _PANDAS.format("excel('{path}')", "{stem}"),
-    ".json": _PANDAS.format("json('{path}')", "{stem}"),
-    ".jsonl": _PANDAS.format("json('{path}', lines=True)", "{stem}"),
-    ".pkl": _PANDAS.format("pickle('{path}')", "{stem}"),
-    ".feather": _PANDAS.format("feather('{path}')", "{stem}"),
+    ".xlsx": _PANDAS % "excel(sys.argv[1])",
+    ".json": _PANDAS % "json(sys.argv[1])",
+    ".jsonl": _PANDAS % "json(sys.argv[1], lines=True)",
+    ".pkl": _PANDAS % "pickle(sys.argv[1])",
+    ".feather": _PANDAS % "feather(sys.argv[1])",
     ".h5": HDF5,
     ".hdf5": HDF5,
-    ".gz": "gunzip -k {quoted}",
-    ".zip": "unzip {quoted}",
+    ".gz": "gunzip -k {path}",
+    ".zip": "unzip {path}",
 }
 
 
@@ -137,7 +134,7 @@ def open_motion(
     if (command := _CONVERTED_BY.get(path.suffix.lower())) and path.is_file():
         raise BagError(
             f"{path}: expected a recording of ROS or a table, got {path.suffix}; convert it: "
-            f"{command.format(path=path, stem=path.stem, quoted=shlex.quote(f'{path}'))}"
+            f"{command.format(path=shlex.quote(f'{path}'), stem=shlex.quote(path.stem))}"
         )
     recording = bags.open_recording(path)
     topics = bags.topics_of(recording)

@@ -9,6 +9,7 @@ those of the others lie on straight lines between their own samples.
 
 from __future__ import annotations
 
+import shlex
 from array import array
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -19,8 +20,9 @@ from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted, harmless, listed
 from inverse_dynamics.data.array_files import ArrayTable
-from inverse_dynamics.data.columns import EFFORT, POSITION, TIME, VELOCITY
-from inverse_dynamics.data.table_logs import PLAIN, LogFormat, read_table_log
+from inverse_dynamics.data.log_format import PLAIN, LogFormat
+from inverse_dynamics.data.table_logs import read_table_log
+from inverse_dynamics.data.vocabulary import EFFORT, POSITION, TIME, VELOCITY
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
@@ -87,7 +89,7 @@ def read_ros1_log(
     except (ReaderError, OSError, ValueError, AssertionError, KeyError, IndexError) as error:
         raise BagError(
             f"{path}: can't be read as a ROS 1 recording ({harmless(error, 200)}): it is damaged or of "
-            f"another kind; `rosbag reindex {path}` may mend it"
+            f"another kind; `rosbag reindex {shlex.quote(str(path))}` may mend it"
         ) from error
     joints = tuple(joints) or next((series.joints for series in found), ("a robot",))
     whole = [series for series in found if len(series.joints) == len(joints)]
@@ -145,7 +147,7 @@ def _series(
             raise BagError(
                 f"{path}: expected messages of {MESSAGE_TYPE}{topic and f' on {topic}'}, got none; its "
                 f"topics are {listed(topics, 20)}; another type becomes a table by `rostopic echo -p -b "
-                f"{path} TOPIC > log.csv`"
+                f"{shlex.quote(str(path))} TOPIC > log.csv`"
             )
         total = sum(c.msgcount for c in chosen)
         for done, (connection, received, raw) in enumerate(reader.messages(chosen)):

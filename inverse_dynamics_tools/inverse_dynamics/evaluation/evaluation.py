@@ -20,8 +20,8 @@ from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.bags import topics_of
 from inverse_dynamics.data.joint_log import JointLog, check_clock
+from inverse_dynamics.data.log_format import LogFormat
 from inverse_dynamics.data.recordings import open_motion
-from inverse_dynamics.data.table_logs import LogFormat
 from inverse_dynamics.data.time_window import TimeWindow
 from inverse_dynamics.evaluation.accelerations import MASKS, Samples
 from inverse_dynamics.evaluation.bands import read_band
@@ -159,7 +159,7 @@ def evaluate(
     drive_gains
         N m/A (prismatic N/A) of efforts that are currents.
     columns, scale, sign, rate, gears
-        What the names of a table's columns don't say, see table_logs.LogFormat.
+        What the names of a table's columns don't say, see log_format.LogFormat.
     accelerations, cutoff
         One of accelerations.METHODS; Hz, of a low-pass.
     clock

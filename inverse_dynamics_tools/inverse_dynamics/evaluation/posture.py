@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.wording import listed
+from inverse_dynamics.data.log_format import LogFormat
 from inverse_dynamics.data.recordings import position_ranges
-from inverse_dynamics.data.table_logs import LogFormat
 from inverse_dynamics.robot.descriptions import carried_joints
 from inverse_dynamics.robot.solvers import brings_own_model
 

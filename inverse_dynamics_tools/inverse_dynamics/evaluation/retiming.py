@@ -26,10 +26,12 @@ from inverse_dynamics._core import (
 )
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.located_yaml import read_mapping
-from inverse_dynamics.data.columns import POSITION
 from inverse_dynamics.data.csv_table import is_csv
 from inverse_dynamics.data.joint_trajectories import read_joint_trajectories
-from inverse_dynamics.data.table_logs import LogFormat, open_table, read_motion
+from inverse_dynamics.data.log_format import LogFormat
+from inverse_dynamics.data.table_logs import read_motion
+from inverse_dynamics.data.tables import open_table
+from inverse_dynamics.data.vocabulary import POSITION
 from inverse_dynamics.errors import BagError, UserError
 from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy

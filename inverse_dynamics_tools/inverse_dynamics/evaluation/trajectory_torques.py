@@ -19,16 +19,13 @@ import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted
-from inverse_dynamics.data.columns import ACCELERATION, POSITION, VELOCITY
 from inverse_dynamics.data.csv_table import is_csv
 from inverse_dynamics.data.joint_trajectories import JointTrajectory, read_joint_trajectories
-from inverse_dynamics.data.table_logs import (
-    LogFormat,
-    add_derivatives,
-    check_seconds,
-    open_table,
-    read_motion,
-)
+from inverse_dynamics.data.log_format import LogFormat
+from inverse_dynamics.data.table_logs import add_derivatives, read_motion
+from inverse_dynamics.data.tables import open_table
+from inverse_dynamics.data.times import check_seconds
+from inverse_dynamics.data.vocabulary import ACCELERATION, POSITION, VELOCITY
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
@@ -40,7 +37,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.base.arrays import Floats, Integers
     from inverse_dynamics.base.progress import Progress
-    from inverse_dynamics.data.table_logs import Table
+    from inverse_dynamics.data.tables import Table
 
 _FAR_LONGER = 100.0  # times; milliseconds make it 1000 times
 _WHY = "torques can't be computed without them"
@@ -181,11 +178,11 @@ def _states_of_table(
         )
     kinds, numbers = (VELOCITY, ACCELERATION), dict(motion.numbers)
     if not numbers.keys() >= {*kinds}:  # between points far apart, positions don't tell the motion
-        check_seconds(table, motion.time)
+        check_seconds(f"{table.path}", motion.time)
     notes = add_derivatives(motion.time, numbers, kinds)
     states = [numbers[kind] for kind in (POSITION, *kinds)]
     if _much_faster_than_it_moves(motion.time, *states[:2]):
-        check_seconds(table, motion.time)
+        check_seconds(f"{table.path}", motion.time)
     return (motion.time, states), notes
 
 

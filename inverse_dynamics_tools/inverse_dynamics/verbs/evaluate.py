@@ -109,7 +109,7 @@ def declare(options: Options) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.data.several_recordings import holds_recordings
-    from inverse_dynamics.data.table_logs import parts_joined
+    from inverse_dynamics.data.tables import parts_joined
 
     arguments.bags = parts_joined(arguments.bags)
     robot = chosen_robot(arguments)

@@ -143,7 +143,7 @@ def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.data.table_logs import parts_joined
+    from inverse_dynamics.data.tables import parts_joined
     from inverse_dynamics.identification.hold_out import hold_out
     from inverse_dynamics.identification.identify import identify
     from inverse_dynamics.results.identifications import (
