@@ -24,7 +24,7 @@ import numpy as np
 from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.data.vocabulary import EFFORT, POSITION, VELOCITY
+from inverse_dynamics.data.vocabulary import EFFORT, JOINTS_CHANGE, POSITION, VELOCITY
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
@@ -142,10 +142,8 @@ def _joints_beside(table: Any, path: Path) -> dict[str, list[str]]:
         ):
             first, *others = {tuple(joints): None for joints in column.to_pylist()}
             if others:
-                raise BagError(
-                    f"{path}: {name}: expected the joints {listed(first)} in all messages, as in the first one, got "
-                    f"{listed(others[0])}; write one table per arm"
-                )
+                change = JOINTS_CHANGE.format(listed(first), listed(others[0]))
+                raise BagError(f"{path}: {name}: {change}")
             before = name.removesuffix("name")
             labels |= {f"{before}{kind}": [*first] for kind in (POSITION, VELOCITY, EFFORT)}
     return labels

@@ -159,13 +159,8 @@ def named_positions(names: Sequence[str], joints: Sequence[str]) -> dict[str, tu
 
 def _families(names: Sequence[str], joints: Sequence[str]) -> dict[str, list[Family]]:
     """Columns of all joints, by quantity."""
-    groups: dict[tuple[int, tuple[str, ...]], dict[str | int, str]] = defaultdict(dict)
-    called = _called(joints)
-    for name in names:
-        for kind, pattern, joint in _places(name, called):
-            groups[kind, pattern].setdefault(joint, name)
     found: dict[str, list[Family]] = defaultdict(list)
-    for (kind, pattern), columns in groups.items():
+    for (kind, pattern), columns in _groups(names, _called(joints)).items():
         numbers = sorted(key for key in columns if isinstance(key, int))
         order: Sequence[str | int] = numbers if kind == 2 else joints
         complete = len(columns) == len(joints) and (kind < 2 or numbers[0] in (0, 1))
@@ -175,6 +170,17 @@ def _families(names: Sequence[str], joints: Sequence[str]) -> dict[str, list[Fam
             rank, unit = (kind, *foreign(quantity, pattern)), unit_of(quantity, pattern)
             found[quantity].append(Family(rank, ordered, unit))
     return found
+
+
+def _groups(
+    names: Sequence[str], called: dict[tuple[str, ...], str]
+) -> dict[tuple[int, tuple[str, ...]], dict[str | int, str]]:
+    """Columns by joint or number, of names that are the same but for it: by kind and pattern of _places()."""
+    groups: dict[tuple[int, tuple[str, ...]], dict[str | int, str]] = defaultdict(dict)
+    for name in names:
+        for kind, pattern, joint in _places(name, called):
+            groups[kind, pattern].setdefault(joint, name)
+    return groups
 
 
 def _called(joints: Sequence[str]) -> dict[tuple[str, ...], str]:
@@ -231,14 +237,10 @@ def quantities_named(names: Sequence[str], file: str) -> set[str]:
 
 def numbered(names: Sequence[str]) -> dict[str, Family]:
     """By quantity, the best columns that differ in a number, however many they are."""
-    sets = defaultdict(list)
-    for name in names:
-        for kind, pattern, _ in _places(name, {}):
-            sets[kind, pattern].append(name)
     found: dict[str, Family] = {}
-    for (kind, pattern), columns in sets.items():
+    for (kind, pattern), columns in _groups(names, {}).items():
         if quantity := quantity_of(pattern):
-            family = Family((kind, *foreign(quantity, pattern)), (*columns,), "")
+            family = Family((kind, *foreign(quantity, pattern)), (*columns.values(),), "")
             found[quantity] = min(found.get(quantity, family), family)
     return found
 
@@ -281,13 +283,8 @@ def _joints_of(names: Sequence[str], given: dict[str, str]) -> tuple[str, ...]:
     named = dict.fromkeys(joint for kind, _, joint in split if joint and kind in UNITS_OF_NAMES)
     if named and POSITION not in given:
         return tuple(named)
-    counts = defaultdict(set)
-    for name in names:
-        for kind, pattern, number in _places(name, {}):
-            if kind == 2 and quantity_of(pattern) == POSITION:
-                counts[pattern].add(number)
-    largest = max(map(len, counts.values()), default=0)
-    return tuple(map(str, range(largest)))
+    sets = [group for (_, p), group in _groups(names, {}).items() if quantity_of(p) == POSITION]
+    return tuple(map(str, range(max(map(len, sets), default=0))))
 
 
 def first_to_last(names: Sequence[str]) -> str:

@@ -24,6 +24,7 @@ from inverse_dynamics.base.decimals import ASCII_SPACE, NOT_FINITE, decimal
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted, harmless, listed, shown
 from inverse_dynamics.data.times import seconds_of, time_columns
+from inverse_dynamics.data.vocabulary import JOINTS_CHANGE
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
@@ -200,8 +201,7 @@ class CsvTable:
         joints, found = ([row[k].strip(" '") for k in self.same] for row in (self.first, fields))
         if joints != found:
             raise BagError(
-                f"{self.path}:{line}: expected the joints {listed(joints)} in all messages, as in the first one, got "
-                f"{listed(found)}; record one topic per arm, or a recording of ROS"
+                f"{self.path}:{line}: {JOINTS_CHANGE.format(listed(joints), listed(found))}"
             )
         return [self._number(fields[column], line, column) for column in where]
 

@@ -18,6 +18,7 @@ import numpy as np
 from inverse_dynamics.base.decimals import LARGEST
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted, listed
+from inverse_dynamics.data import times
 from inverse_dynamics.data.columns import (
     Matched,
     first_to_last,
@@ -30,14 +31,6 @@ from inverse_dynamics.data.columns import (
 )
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.data.log_format import PLAIN, LogFormat
-from inverse_dynamics.data.times import (
-    beyond_midnight,
-    check_seconds,
-    in_order,
-    one_after_another,
-    sure_unit,
-    whole_seconds,
-)
 from inverse_dynamics.data.vocabulary import (
     ACCELERATION,
     CURRENT,
@@ -89,16 +82,16 @@ def read_table_log(
     Raises BagError.
     """
     motion = read_motion(table, joints, form, (POSITION, EFFORT), progress)
-    order = in_order(motion.time)
+    order = times.in_order(motion.time)
     time = motion.time[order]
     notes = ["rows are sorted by time"] if not np.array_equal(time, motion.time) else []
     numbers = {kind: columns[order] for kind, columns in motion.numbers.items()}
-    unit, why = sure_unit(time, numbers)
+    unit, why = times.sure_unit(time, numbers)
     if unit and TIME not in form.factors(f"{table.path}"):
         time = time * UNITS[unit]
         notes.append(f"time is taken to be in {unit}: {why}")
-    check_seconds(f"{table.path}", time)
-    time, runs = one_after_another(time)
+    times.check_seconds(f"{table.path}", time)
+    time, runs = times.one_after_another(time)
     stamps: Integers = np.asarray(np.round(time * 1e9), dtype=np.int64)
     derived = add_derivatives(time, numbers, (VELOCITY,))
     measured = CURRENT if CURRENT in numbers else EFFORT
@@ -146,12 +139,12 @@ def read_motion(
     ends = np.cumsum([len(group) for group in matched.columns.values()])[:-1]
     numbers = dict(zip(matched.columns, np.split(rows, ends, axis=1), strict=True))
     if part := matched.columns.get(TIME, ())[1:]:
-        numbers[TIME] = whole_seconds(numbers[TIME], *part)
+        numbers[TIME] = times.whole_seconds(numbers[TIME], *part)
     numbers = form.scaled(numbers, matched.units, len(matched.joints), where)
     if form.rate is not None:
         numbers[TIME] = np.arange(len(rows))[:, None] / form.rate
         notes.append(f"samples are {form.rate:g} per second, as stated")
-    time = beyond_midnight(numbers.pop(TIME)[:, 0])
+    time = times.beyond_midnight(numbers.pop(TIME)[:, 0])
     _check_size(where, matched, numbers)
     return Motion(matched.joints, time, numbers, tuple(notes))
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.data.joint_log import Clock
 
 # A column of joint states as programs write them: what is before it, the field, the number.
-_FIELD = re.compile(r"(?:field\.)?(.*?)(name|position|velocity|effort)[\W_]?(\d+)\W?")
+_FIELD = re.compile(r"^(?:field\.)?(.*?)(name|position|velocity|effort)[\W_]?(\d+)\W?$")
 _STAMPS = {"%time": "received_ns", "field.header.stamp": "time_ns"}  # of `rostopic echo -p`
 
 
@@ -157,8 +157,7 @@ def _by_joint(table: CsvTable) -> tuple[str, ...]:
             f"{table.path}: expected a table, got messages in YAML; write them with `ros2 topic echo --csv`, or record "
             "them with `ros2 bag record`"
         )
-    found = [_FIELD.fullmatch(name) for name in table.names]
-    fields = [field.groups() if field else ("", "", "") for field in found]
+    fields = [found[0] if (found := _FIELD.findall(name)) else ("", "", "") for name in table.names]
     joints = {
         (before, number): text.strip(" '")
         for (before, kind, number), text in zip(fields, table.first, strict=False)

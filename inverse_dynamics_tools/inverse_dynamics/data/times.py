@@ -54,19 +54,16 @@ _MOMENT = re.compile(
 def time_columns(names: Sequence[str]) -> list[str]:
     """Columns that are as good as any for the time: of the fewest words, of the first of TIME_WORDS.
 
-    Without any: those of which the last part is one, `log.t`.
+    A name of which the last part alone says it, `log.t`, comes last.
     """
-    parts = {name: name.rpartition(".")[2] for name in names}
-    return _time_columns({name: name for name in names}) or _time_columns(parts)
-
-
-def _time_columns(names: Mapping[str, str]) -> list[str]:
     known = {*TIME_WORDS, *UNITS_OF_NAMES[TIME]}
     ranked = defaultdict(list)
-    for name, telling in names.items():
-        words = [word for word in words_of(telling) if word not in NEUTRAL]
-        if known.issuperset(words) and (said := [w for w in TIME_WORDS if w in words]):
-            ranked[len(words_of(telling)), TIME_WORDS.index(said[0])].append(name)
+    for name in names:
+        for rank, telling in enumerate((name, name.rpartition(".")[2])):
+            words = words_of(telling)
+            said = [word for word in TIME_WORDS if word in words]
+            if said and known.union(NEUTRAL).issuperset(words):
+                ranked[rank, len(words), TIME_WORDS.index(said[0])].append(name)
     return ranked[min(ranked)] if ranked else []
 
 

@@ -53,37 +53,24 @@ _LESS_SURE = frozenset({"theta"})
 
 # Factors to SI units.
 UNITS = {
-    "deg": 0.017453292519943295,
-    "rad": 1.0,
-    "mrad": 1e-3,
-    "rpm": 0.10471975511965977,
-    "m": 1.0,
-    "cm": 1e-2,
-    "mm": 1e-3,
-    "nm": 1.0,
-    "knm": 1e3,
-    "ncm": 1e-2,
-    "nmm": 1e-3,
-    "mnm": 1e-3,
-    "kgfcm": 0.0980665,
-    "a": 1.0,
-    "ma": 1e-3,
-    "s": 1.0,
-    "ms": 1e-3,
-    "us": 1e-6,
-    "ns": 1e-9,
+    **{"deg": 0.017453292519943295, "rad": 1.0, "mrad": 1e-3, "rpm": 0.10471975511965977},
+    **{"m": 1.0, "cm": 1e-2, "mm": 1e-3},
+    **{"nm": 1.0, "knm": 1e3, "ncm": 1e-2, "nmm": 1e-3, "mnm": 1e-3, "kgfcm": 0.0980665},
+    **{"a": 1.0, "ma": 1e-3},
+    **{"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9},
 }
 _SECONDS = ("sec", "secs", "second", "seconds")
 _PREFIXES = {"": "s", "m": "ms", "milli": "ms", "u": "us", "micro": "us", "n": "ns", "nano": "ns"}
 _TIME_UNITS = {prefix + word: unit for prefix, unit in _PREFIXES.items() for word in _SECONDS}
 _TIME_UNITS |= {"millis": "ms", "micros": "us"}
 _SPELLINGS = {"degrees": "deg", "degree": "deg", **_TIME_UNITS}
+_OF_POSITION = ("deg", "degree", "degrees", "rad", "mrad", "mm", "cm")
 # Units that words of a name may state; `a`, `m` and `s` alone are too often something else.
 UNITS_OF_NAMES = {
     TIME: ("ms", "us", "ns", "s", *_TIME_UNITS),
-    POSITION: ("deg", "degree", "degrees", "rad", "mrad", "mm", "cm"),
-    VELOCITY: ("deg", "degree", "degrees", "rad", "mrad", "rpm", "mm", "cm"),
-    ACCELERATION: ("deg", "degree", "degrees", "rad", "mrad", "mm", "cm"),
+    POSITION: _OF_POSITION,
+    VELOCITY: (*_OF_POSITION, "rpm"),
+    ACCELERATION: _OF_POSITION,
     EFFORT: ("nm", "knm", "ncm", "nmm", "mnm", "kgfcm"),
     CURRENT: ("ma",),
 }
@@ -106,6 +93,11 @@ KEYS = {
     **{"t": TIME, "q": POSITION, "qd": VELOCITY, "dq": VELOCITY, "qdd": ACCELERATION},
     **{"ddq": ACCELERATION, "tau": EFFORT, "torque": EFFORT, "i": CURRENT},
 }
+
+# What is wrong with joint states whose names of joints change: those of the first message, those of another.
+JOINTS_CHANGE = (
+    "expected the joints {} in all messages, as in the first one, got {}; record one topic per arm"
+)
 
 
 def words_of(name: str) -> tuple[str, ...]:
