@@ -64,7 +64,7 @@ ended by signal N.
 # To argparse, what begins with a minus is an option unless it looks like this: a number, or several.
 _NUMBERS = re.compile(r"-[\d.]+(e[-+]?\d+)?(,[-+\d.,e]+)?$", re.IGNORECASE)
 
-# What argparse says of a wrong verb or value.
+# argparse's text for a wrong verb or value.
 _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)")
 
 

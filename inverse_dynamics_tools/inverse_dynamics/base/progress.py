@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    # Called now and then during long work: what is done, how much of it, out of how much.
+    # Called during long work: kind of work, amount done, total.
     Progress = Callable[[str, int, int], None]
 
 
 def no_progress(_what: str, _done: int, _total: int) -> None:
-    """Say nothing: the progress of a call from a script."""
+    """Report nothing: the default of calls from scripts."""

@@ -159,7 +159,7 @@ class _Worker:
         self.end()
 
     def _send(self, what: object) -> None:
-        with suppress(OSError):  # it has died already: outcome() says so
+        with suppress(OSError):  # it has died already: outcome() reports it
             self._connection.send(what)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What was found in the samples of a recording.
+"""Findings about the samples of a recording.
 
-The rules are those of inverse_dynamics_evaluation/samples.hpp. What they find is stated in words in
-any case; they are acted upon unless they are switched off.
+The rules are those of inverse_dynamics_evaluation/samples.hpp. Notes state their findings in any case; a rule
+that is switched off changes nothing else.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Mask
     from inverse_dynamics.data.joint_log import JointLog
 
-# What each rule does, as --help says it.
+# Help text of each rule.
 RULES = {
     "repeated": "samples that repeat the previous one are left out of the differentiation",
     "non-increasing": "samples whose stamp isn't later than all previous ones are left out of it too",
@@ -31,7 +31,7 @@ MASKS = ("repeated", "non_increasing", "start_transient", "isolated", "kept")
 
 @dataclass(frozen=True)
 class Samples:
-    """What was found in N samples."""
+    """Findings about N samples."""
 
     repeated: Mask  # (N,) repeats the sample before
     non_increasing: Mask  # (N,) not later than all before it
@@ -43,7 +43,7 @@ class Samples:
 
     @property
     def left_out(self) -> int:
-        """How many samples the second metrics leave out."""
+        """Number of samples that the second metrics leave out."""
         return int((~self.kept).sum())
 
     def left_out_spans(self, log: JointLog) -> list[tuple[float, float]]:

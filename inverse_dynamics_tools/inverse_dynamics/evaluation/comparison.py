@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Evaluations of one recording, and what tells them apart."""
+    """Evaluations of one recording, and their labels."""
 
     evaluations: tuple[Evaluation, ...]
     labels: tuple[str, ...]  # one per evaluation, all different

@@ -5,7 +5,7 @@
     for contact in found.contacts:
         print(contact.begin, contact.end, contact.joint, contact.torque)
 
-The C++ package inverse_dynamics_control has the estimators and statistics: see docs/contact.md.
+Estimators and statistics are those of the C++ package inverse_dynamics_control: see docs/contact.md.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 __all__ = ["Arm", "Evaluation", "JointError", "check_options", "evaluate", "joint_errors"]
 
 CAUSE = "likely cause of the error: "
-"""How the note begins that says a diagnosis."""
+"""Prefix of the note that states a diagnosis."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -318,7 +318,7 @@ def check_options(
 
 
 class Arm:
-    """What a run configuration says of the arm, before anything is read. Raises UserError."""
+    """The arm of a run configuration, before a recording is read. Raises UserError."""
 
     def __init__(self, robot: Robot) -> None:
         from inverse_dynamics import _core

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MotionEnergy:
-    """What a motion takes. Joints that brake give nothing back."""
+    """Energy and power of a motion. Joints that brake return nothing."""
 
     driven: float  # J, integral of positive power over all joints
     friction: float  # J, lost to friction, also while joints brake

@@ -56,7 +56,7 @@ _STILL = 1e-6  # rad/s
 _LEAST = 1e-9  # N m, of a limit
 _PLACES = 1001  # of a path, at which positions are checked
 _ROUNDING = 1e-6  # rad
-_AT_LIMIT = 0.99  # of a limit: the joint is said to be at it
+_AT_LIMIT = 0.99  # of a limit: the joint counts as being at it
 
 
 @dataclass(frozen=True)

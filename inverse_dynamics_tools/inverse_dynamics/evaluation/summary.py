@@ -26,7 +26,7 @@ class EvaluationSummary:
     plugin: str
     start: float  # s: stamp of the first sample
     duration: float  # s
-    window: TimeWindow  # what was asked for
+    window: TimeWindow  # the requested one
     samples: int
     kept_samples: int  # those of errors_of_kept
     accelerations: Accelerations

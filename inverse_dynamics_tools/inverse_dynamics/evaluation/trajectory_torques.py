@@ -177,7 +177,7 @@ def _states_of_table(
             "an empty one; fill it in, or leave out the row"
         )
     kinds, numbers = (VELOCITY, ACCELERATION), dict(motion.numbers)
-    if not numbers.keys() >= {*kinds}:  # between points far apart, positions don't tell the motion
+    if not numbers.keys() >= {*kinds}:  # positions of points far apart don't determine the motion
         check_seconds(f"{table.path}", motion.time)
     notes = add_derivatives(motion.time, numbers, kinds)
     states = [numbers[kind] for kind in (POSITION, *kinds)]

@@ -92,7 +92,7 @@ def _styled(make: Callable[[], Figure]) -> Iterator[Figure]:
 
 
 def make_printable(figure: Figure) -> None:
-    """Names that the font, or XML, can't show become escapes."""
+    """Replace characters that the font, or XML, can't show by escapes."""
     from matplotlib.font_manager import findfont, get_font
     from matplotlib.text import Text
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a new model is compared with: the description, and the present model with its friction refitted."""
+"""Baselines of a new model: the description, and the present model with its friction refitted."""
 
 from __future__ import annotations
 

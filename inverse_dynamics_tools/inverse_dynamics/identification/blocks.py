@@ -38,7 +38,7 @@ class Block:
     recording: str
     time: Floats  # (M,) s since the recording's first sample
     instants: Floats  # (M,) s; when samples were really taken
-    used: Mask  # (M,) samples that say something new
+    used: Mask  # (M,) samples that don't repeat others
     q: Floats  # (M, n)
     qd: Floats
     qdd: Floats  # from this block's samples alone

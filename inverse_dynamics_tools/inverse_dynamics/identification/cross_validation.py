@@ -76,9 +76,9 @@ def errors_of(fitter: ArmFitter, fit: ArmFit, block: Block) -> Floats:
 def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     """The fit to all blocks, chosen by leaving out each part in turn.
 
-    A step off zero velocity is a matter of a day: choices are made with it, so that it doesn't blur them. The fit
-    is without, as it would be a constant force at rest. Of long recordings, choices take samples at equal distances;
-    the fit takes all.
+    The shift of a friction step differs between days. Choices are made with it, so that it doesn't blur them; the fit
+    omits it, since it would be a constant force at rest. Choices use equidistant samples of long recordings; the fit
+    uses all.
     """
     blocks = moving(blocks)
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES

@@ -28,7 +28,7 @@ _FEW_SAMPLES = 20
 def findings_of_errors(
     fitter: ArmFitter, links: Sequence[str], held: dict[str, Floats], units: Sequence[str]
 ) -> tuple[Finding, ...]:
-    """What the prior and held-out errors say of links and joints."""
+    """Findings about links and joints, from the prior and held-out errors."""
     found = [
         Finding("floor", f"link {link}: the description is implausible: the prior has {text}", link)
         for link, text in zip(links, fitter.changes, strict=True)
@@ -62,7 +62,7 @@ def findings_of_errors(
 def gravity_finding(
     robot: Robot, weights: Sequence[Sequence[Floats]], units: Sequence[str]
 ) -> Finding:
-    """What is assumed where efforts lack gravity."""
+    """The assumption about efforts without gravity."""
     off = np.sqrt(sum((np.concatenate(link) ** 2).mean(axis=0) for link in weights))
     figures = ", ".join(f"{x:.2g} {unit}" for x, unit in zip(off, units, strict=True))
     name = "the description" if robot.urdf is None else robot.urdf.name
@@ -78,7 +78,7 @@ def gravity_finding(
 def motion_findings(
     fitter: ArmFitter, chosen: Chosen, blocks: Sequence[Block], independent: Floats
 ) -> list[Finding]:
-    """What the motion didn't show, and when the torques were recorded."""
+    """Findings about the motion, and the delay of the torques."""
     found = []
     if chosen.delay:
         found.append(

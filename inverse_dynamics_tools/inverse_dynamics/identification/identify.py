@@ -308,7 +308,7 @@ def _banded(
     chosen: Chosen,
     blocks: Sequence[Block],
 ) -> tuple[TorqueBand, Solver]:
-    """The band of a fit to blocks, and its solver. Errors in time are alike: fewer samples tell the covariance."""
+    """The band of a fit to blocks, and its solver. Errors are correlated in time: some samples suffice."""
     step = 1 + sum(map(len, blocks)) // _BAND_SAMPLES
     later = [block.later(chosen.delay).thinned(step) for block in moving(blocks)]
     known = knowledge(

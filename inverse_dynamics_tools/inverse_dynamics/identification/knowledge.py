@@ -71,8 +71,8 @@ class Knowledge:
     data: Floats  # (m, m), of samples as if they were independent
     prior: Floats  # (m, m)
     scores: Floats  # (clusters, m)
-    worth: float  # how many independent samples one sample is worth, mean over the joints
-    # (m, K) by how much the unknowns are wrong if an assumption is, by one standard deviation each
+    worth: float  # effective independent samples per sample, mean over the joints
+    # (m, K) errors of the unknowns if an assumption is wrong by one standard deviation
     assumed: Floats
 
     @property
@@ -198,7 +198,7 @@ def _clusters(blocks: Sequence[Block]) -> list[FitBlock]:
 
 
 def independent_samples(errors: Sequence[Floats]) -> Floats:
-    """(n,) how many independent samples errors (M, n) of blocks are worth.
+    """(n,) effective number of independent samples of errors (M, n) of blocks.
 
     Samples over the sum of their autocorrelations, up to the first one that is negative.
     """

@@ -4,9 +4,8 @@
     found = estimate_payload("recording", "ur10_real", empty="recording_without_load")
     print(found.estimate.mass, found.estimate.mass_half_width)
 
-The estimator is that of the C++ package inverse_dynamics_identification: see docs/payload.md. What is
-said here of the load is in the tip frame, in addition to what the run configuration has the robot
-carry already.
+The estimator is that of the C++ package inverse_dynamics_identification: see docs/payload.md. The load is
+stated in the tip frame, in addition to the payload of the run configuration.
 """
 
 from __future__ import annotations
@@ -50,18 +49,18 @@ _SETTLED = 1e-3  # of the half widths
 _WORST_CENTER = 0.1  # m: half width of a center of mass that isn't known
 _ROUNDING = 1e-9  # of a variance that a projection has removed
 _NO_LOAD = 1e-3  # of the weight at 1 m: the direction is known to a mm in some m
-_LEAST_SHARE = 0.02  # of a joint's noise: offsets aren't known better
+_LEAST_SHARE = 0.02  # of a joint's noise: offsets are no more certain
 _MOST_UNEXPLAINED = 0.5  # of what the torques of a joint vary by
 _LEAST_VARIATION = 0.1  # of the largest torques: of joints that this is asked of
 
 
 class PayloadError(EvaluationError):
-    """A recording that tells no payload: its text says why, and what to do."""
+    """A recording that doesn't determine a payload: the text states why, and the remedy."""
 
 
 @dataclass(frozen=True)
 class EmptyRun:
-    """What the same arm does without a load: (n,) N m (prismatic N)."""
+    """Offsets and noise of the same arm without a load: (n,) N m (prismatic N)."""
 
     offset: Floats  # mean of measured minus computed
     offset_deviation: Floats  # of that mean
@@ -205,7 +204,7 @@ def samples_of(evaluation: Evaluation) -> Samples:
 
 
 def empty_run(samples: Samples, solver: Solver) -> EmptyRun:
-    """What is known of an arm that carries nothing."""
+    """Offsets and noise of an arm that carries nothing."""
     residual = samples.residual(solver)
     offset = residual.mean(axis=0)
     noise = residual_noise(samples.time, residual - offset)
@@ -325,7 +324,7 @@ def _settled(last: PayloadEstimate, found: PayloadEstimate) -> bool:
 
 
 def _arm_of(robot: Robot) -> tuple[ArmUncertainty | None, list[str]]:
-    """What the model may be wrong by, and a note where that isn't known."""
+    """The uncertainty of the model, and a note where it is unknown."""
     if robot.model is None or robot.plugin != RIGID_BODY or not robot.friction:
         return None, []
     arm, why = read_uncertainty(robot.model)
@@ -374,7 +373,7 @@ def _require_motion(samples: Samples, where: str, load: str = "with the load") -
 
 
 def _check(found: Fit, samples: Samples, evaluation: Evaluation, idle: Floats) -> None:
-    """Refuse what isn't an estimate of a load."""
+    """Refuse an estimate that isn't that of a load."""
     where, estimate = evaluation.bag, found.estimate
     varies, left = samples.measured.std(axis=0), found.after.std(axis=0)
     loaded = varies > _LEAST_VARIATION * _rms(samples.measured).max()
@@ -407,7 +406,7 @@ def _check(found: Fit, samples: Samples, evaluation: Evaluation, idle: Floats) -
 
 
 def _phantom(found: Fit) -> list[str]:
-    """What is found where nothing is carried: an error of the model, in words."""
+    """The load found in a recording without one: an error of the model, in words."""
     mass, half = found.estimate.mass, found.estimate.mass_half_width
     if mass <= half:
         return []

@@ -152,7 +152,7 @@ def check_result(found: Identification, accept: Sequence[str] = ()) -> None:
 
 
 def _check_mass(found: Identification) -> None:
-    """Of all links, and of the efforts by the description's torques: masses near the base stay what it says."""
+    """Compare the total mass, and the scale of efforts, with the description: a fit keeps masses near the base."""
     mass, described = (float(links[:, 0].sum()) for links in (found.model.parameters, found.prior))
     measured, urdf = valid_samples(found.blocks, "measured", "urdf")
     share = float((measured * urdf).sum() / (urdf**2).sum())

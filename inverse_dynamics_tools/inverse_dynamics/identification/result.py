@@ -48,7 +48,7 @@ LAWS = {
 
 
 class IdentificationError(EvaluationError):
-    """Recordings that no model can be identified from: its text says why, and what to do.
+    """Recordings that don't determine a model: the text states why, and the remedy.
 
     mistake: the nearest heading of docs/why_dont_my_torques_match.md, or "".
     """
@@ -200,7 +200,7 @@ class Identification:
     coverage: Floats  # (n,) share of the held-out samples within their 95 % band
     blocks: tuple[HeldOutBlock, ...]
     noise: Floats  # (n,) N m, RMSE of the final model on what it was fitted to
-    independent: Floats  # (n,) how many independent samples the residuals are worth
+    independent: Floats  # (n,) effective number of independent samples of the residuals
     choices: tuple[Choice, ...]
     intervals: tuple[Interval, ...]
     prior_decided: tuple[PriorDecided, ...]

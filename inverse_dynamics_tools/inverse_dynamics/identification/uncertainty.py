@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an identified model may be wrong by: the content of the file beside it, see model_errors.py.
+"""Uncertainty of an identified model: the content of the file beside it, see model_errors.py.
 
 The covariance is that of the posterior: samples whose errors are correlated in time, and the prior.
 """
@@ -183,7 +183,7 @@ def _rows(values: Floats, digits: int) -> list[list[float]]:
 
 
 def read_uncertainty(model: Path) -> tuple[ArmUncertainty | None, str]:
-    """What the model may be wrong by; or None, and why.
+    """Uncertainty of the model; or None, and why.
 
     Raises RobotError: a file that isn't one of `ids identify`.
     """

@@ -101,7 +101,7 @@ def write_page(
 ) -> None:
     """Write the page, whole or not at all; what is there is replaced. Raises OutputError.
 
-    notes: what a reader should know of the page as a whole: a robot that is missing, for one.
+    notes: on the page as a whole, as on a robot that is missing.
     """
     write_text_whole(path, render_page(title, runs, notes))
 

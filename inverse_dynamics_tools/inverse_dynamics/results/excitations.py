@@ -57,7 +57,7 @@ _HARDLY = 0.05  # part of the range of positions: less motion is hardly any
 
 @dataclass(frozen=True)
 class ExcitationResult:
-    """A motion, and what it tells. n joints, in the order of the chain.
+    """A motion, and the uncertainty after it. n joints, in the order of the chain.
 
     deviation: N m (prismatic N), (n,) each: standard deviation of the torques that are predicted
     after it, mean over random states within the limits; of

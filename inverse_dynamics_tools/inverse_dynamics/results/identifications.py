@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An identification as files: a robot that every verb takes, and what it is worth.
+"""An identification as files: a robot for every verb, and its errors.
 
 arm.yaml         run configuration: `ids evaluate RECORDING --robot arm.yaml`
 arm_model.yaml   the model: rigid bodies, friction, 95 % band and range of the data (docs/model_file.md)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-# What each meaning has compared with the computed torques, as --help says it.
+# Help text of each meaning: what is compared with the computed torques.
 EFFORT_MEANINGS = {
     "torque": "torques, compared as they are",
     "current": "motor currents, compared times the drive gains",
@@ -15,7 +15,7 @@ EFFORT_CHOICES = {
     "auto": "the meaning that clearly fits the data, if there is one",
 }
 
-# How accelerations are estimated, as --help says it.
+# Help text of each method of estimating accelerations.
 METHODS = {
     "auto": "accelerations of the recording if it has any, else low-pass with a cut-off chosen from the data",
     "low-pass": "zero-phase low-pass of the velocities, then their derivative",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The file of `ids identify` beside a model: what the model may be wrong by.
+"""The file of `ids identify` beside a model: the uncertainty of the model.
 
 arm_model.yaml   the model
 arm_model.json   SHA-256 of the model's file, its friction; independent deviations of the fit's

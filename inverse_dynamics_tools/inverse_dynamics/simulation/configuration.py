@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.located_yaml import Mapping
     from inverse_dynamics.robot.robots import Robot
 
-DEFAULT_RATE = 500  # Hz, where neither caller nor run configuration says
+DEFAULT_RATE = 500  # Hz, where neither the caller nor the run configuration states one
 
 
 @dataclass(frozen=True)

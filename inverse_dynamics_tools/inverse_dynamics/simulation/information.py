@@ -96,7 +96,7 @@ class States(NamedTuple):
 
 @dataclass(frozen=True)
 class Unknowns:
-    """The unknown numbers of an arm, m of them, and what is believed of them beforehand."""
+    """The m unknowns of an arm, and their prior."""
 
     model: FastModel
     limits: MotionLimits
@@ -248,7 +248,7 @@ def _own_scales(limits: MotionLimits) -> Floats:
 
 
 def sample_weight(period: float) -> float:
-    """How many independent samples one is worth, where samples are `period` s apart."""
+    """Effective independent samples per sample, where samples are `period` s apart."""
     return min(1.0, period / CORRELATION)
 
 

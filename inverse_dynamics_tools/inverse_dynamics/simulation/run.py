@@ -82,7 +82,7 @@ CONTENTS = Contents(
 class SimulatedRun:
     """A simulated recording, the truth behind it, and how it was made."""
 
-    log: JointLog  # what the recording says
+    log: JointLog  # the recording
     motion: Motion  # every sample as it was
     recorded: Recorded  # which samples became messages
     trajectory: Trajectory

@@ -42,8 +42,8 @@ class UrdfChain:
     upper: Floats  # (n,)
     velocity: Floats  # (n,) rad/s (prismatic m/s)
     effort: Floats  # (n,) N m (prismatic N)
-    damping: Floats  # (n,) N m s/rad, what <dynamics> says
-    friction: Floats  # (n,) N m, what <dynamics> says
+    damping: Floats  # (n,) N m s/rad, stated in <dynamics>
+    friction: Floats  # (n,) N m, stated in <dynamics>
     urdf: str  # joints beside the chain are locked, meshes are left out
     notes: tuple[str, ...]  # what was left out, in words
 

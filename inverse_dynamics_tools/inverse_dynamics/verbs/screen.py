@@ -111,7 +111,7 @@ def heading(
 
 
 def announce(text: str) -> None:
-    """Say on stderr that something takes long."""
+    """Announce long work on stderr."""
     print(message(f"ids: {text} ..."), file=sys.stderr, flush=True)
 
 

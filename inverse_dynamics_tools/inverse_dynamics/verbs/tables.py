@@ -35,7 +35,7 @@ def on_screen(table: ReportTable) -> Table:
 
 
 def rounded(value: float) -> str:
-    """Three decimals, or three significant digits where that says nothing."""
+    """Three decimals, or three significant digits of small numbers."""
     if not math.isfinite(value):
         return "-"
     return f"{value:.3f}" if abs(value) >= 0.1 or value == 0 else f"{value:.3g}"

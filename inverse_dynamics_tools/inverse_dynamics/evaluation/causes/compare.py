@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 # Errors: mean over the joints, as shares of their measured ranges.
 _MISMATCH = 0.02  # up to which a model fits
-_RUBS = 0.08  # from which a model is said to lack friction
+_RUBS = 0.08  # from which a model is taken to lack friction
 _FITS = 0.1  # that a remedy may leave
 _FAR, _MOST_LEFT = 6.0, 0.2  # or this part of a greater error, up to this one
 _PAIR_FITS = 0.06  # that two remedies may leave
@@ -178,7 +178,7 @@ def meaning_of_efforts(
 
 
 def compare(samples: Samples | None, arm: ArmModel) -> Comparison:
-    """The causes of a mismatch; none where torques match, or samples tell nothing."""
+    """The causes of a mismatch; none where torques match, or samples are uninformative."""
     if samples is None or not samples.comparable:
         return Comparison()
     found = motions.contradiction(samples, arm)

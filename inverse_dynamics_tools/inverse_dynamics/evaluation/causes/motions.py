@@ -35,7 +35,7 @@ _RATES = {  # velocity over slope of the positions
 _CLOCKS = {1000.0: "ms", 1e6: "us", 1e9: "ns", 1e-3: "thousands of seconds", 60.0: "1/60 s"}
 _TURNS = 4 * np.pi  # rad: joints without limits seldom turn on
 _BEYOND = 1.2  # times the limit
-_CLOCK = 1.12  # least factor of time that efforts tell from wrong inertias
+_CLOCK = 1.12  # least factor of time that efforts distinguish from wrong inertias
 
 
 def contradiction(samples: Samples, arm: ArmModel) -> tuple[Finding, Samples] | None:

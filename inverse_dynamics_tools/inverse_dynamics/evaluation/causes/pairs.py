@@ -46,7 +46,7 @@ def _joined(first: Rival, second: Rival, words: Words) -> Rival:
     """The second mistake, in columns of efforts that have the first."""
     parts: Sequence[Floats] = [first.effort(part) for part in second.columns]
     base = first.effort(second.base)
-    if first.columns:  # a scale, of all that the second says
+    if first.columns:  # a scale of everything that the second predicts
         parts, base = [base, *parts], np.zeros_like(base)
     return Rival("pair", base, first.qd, words, tuple(parts))
 
