@@ -31,7 +31,7 @@ from inverse_dynamics.evaluation.causes.samples import pieces_of
 from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.views import Views
-from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.descriptions import parse_description, read_description
 from inverse_dynamics.robot.dh_tables import guess_notes
 from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot, with_changes
 from inverse_dynamics.robot.solvers import description_notes, open_solver
@@ -329,6 +329,8 @@ class Arm:
         self.joint_names = tuple(self.solver.joint_names)
         self.recorded_names = tuple(_core.recorded_names(robot, list(self.joint_names)))
         _core.effort_options(robot, self.solver)  # drive gains that don't fit are refused
+        if description:
+            parse_description(description, robot.urdf)  # also where the solver doesn't read it
         self.units = tuple(
             "N" if kind == "prismatic" else "N m" for kind in self.solver.joint_types
         )

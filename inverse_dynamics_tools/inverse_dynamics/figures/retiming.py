@@ -66,10 +66,10 @@ def _draw_speed(axis: Axes, result: Retimed) -> None:
     axis.fill_between(
         timed.s, np.minimum(limit, top), top, color=palette.LEFT_OUT, alpha=0.3, linewidth=0
     )
-    axis.plot(timed.s, timed.speed, **COMPUTED, label="within torque limits")
     if result.by_acceleration is not None:
         other = result.by_acceleration
         axis.plot(other.s, other.speed, **MEASURED, label="constant acceleration limit")
+    axis.plot(timed.s, timed.speed, **COMPUTED, label="within torque limits")
     axis.set_xlim(timed.s[0], timed.s[-1])
     axis.set_ylim(0.0, top)
     axis.legend(loc="lower right", fontsize=8, frameon=False)
