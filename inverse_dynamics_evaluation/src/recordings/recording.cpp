@@ -97,7 +97,7 @@ Place placeOf(const std::string& path) {
   if (kind != ".db3" && kind != ".mcap") {
     throw RecordingError(path +
                          ": is not a rosbag2 recording: expected a directory with metadata.yaml, "
-                         "or a .db3 or .mcap file (or a table, .csv or .txt), got '" +
+                         "or a .db3 or .mcap file (or a table; rename one of text to .csv), got '" +
                          file.filename().string() + "'");
   }
   if (!fs::is_regular_file(status) || fs::file_size(path, error) == 0) {

@@ -10,6 +10,7 @@ names, units, signs, a rate. Without velocities, the filtered derivative of the 
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -50,6 +51,17 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.tables import Table
 
+_LARGEST_ANGLE = 100.0  # rad: 16 turns
+_ROW_PER_JOINT = {
+    "joint",
+    "joint_name",
+    "name",
+    "topic",
+}  # columns of tables with a row for each joint
+_TURNED_BY = (
+    'python -c "import pandas, sys; t = pandas.read_csv(sys.argv[1]).pivot(index=sys.argv[2], columns=sys.argv[3]); '
+    "t.columns = map('.'.join, t.columns); t.to_csv('NEW.csv')\""
+)
 _MOTION = (POSITION, VELOCITY, ACCELERATION)
 _NEEDED_FOR = {
     POSITION: "torques depend on them",
@@ -140,6 +152,8 @@ def read_motion(
     numbers = dict(zip(matched.columns, np.split(rows, ends, axis=1), strict=True))
     if part := matched.columns.get(TIME, ())[1:]:
         numbers[TIME] = times.whole_seconds(numbers[TIME], *part)
+    if not matched.exact and _counts(numbers.get(POSITION, np.zeros(1))):
+        matched.units.setdefault(POSITION, "counts")
     numbers = form.scaled(numbers, matched.units, len(matched.joints), where)
     if form.rate is not None:
         numbers[TIME] = np.arange(len(rows))[:, None] / form.rate
@@ -192,7 +206,13 @@ def _check_found(table: Table, matched: Matched, needed: Sequence[str], form: Lo
 
 def _lacking(table: Table, joints: Sequence[str], kinds: Sequence[str]) -> BagError:
     """The error of missing columns; it names those that are more or fewer than the joints."""
-    others = numbered(table.names)
+    names, time = table.names, times.time_columns(table.names)
+    if time and (joint := [name for name in names if name.lower() in _ROW_PER_JOINT]):
+        return BagError(
+            f"{table.path}: expected a row for each time, got one for each {joint[0]}; turn it: "
+            f"{_TURNED_BY} {shlex.join([str(table.path), time[0], joint[0]])}"
+        )
+    others = numbered(names)
     sets = [
         f"{counted(len(others[kind].columns), 'column')}, {first_to_last(others[kind].columns)}"
         for kind in kinds
@@ -205,7 +225,7 @@ def _lacking(table: Table, joints: Sequence[str], kinds: Sequence[str]) -> BagEr
     example = ", ".join(f"{kind}={pattern}" for kind, pattern in patterns.items())
     return BagError(
         f"{table.path}: expected columns of {' and '.join(kinds)}{of_joints}, got "
-        f"{'; '.join(sets) or listed_columns(table.names)}; {_NEEDED_FOR[kinds[0]]}; state them with --columns "
+        f"{'; '.join(sets) or listed_columns(names)}; {_NEEDED_FOR[kinds[0]]}; state them with --columns "
         f"'{example}' (* is the joint's name or number, the first ones are taken), or by the numbers of columns, "
         f"'{kinds[0]}=2-{1 + max(1, len(joints))}'"
     )
@@ -223,6 +243,11 @@ def _unsure_accelerations(matched: Matched, form: LogFormat, where: str) -> list
         f"accelerations {columns[0]} to {columns[-1]} aren't taken, as recorded ones are mostly noisy; to take "
         f"them: --columns 'qdd={' '.join(columns)}'"
     ]
+
+
+def _counts(positions: Floats) -> bool:
+    """Whether they are whole numbers beyond all angles, as encoders count."""
+    return np.abs(positions).max() > _LARGEST_ANGLE and not (positions % 1.0).any()
 
 
 def _check_size(where: str, matched: Matched, numbers: Mapping[str, Floats]) -> None:
