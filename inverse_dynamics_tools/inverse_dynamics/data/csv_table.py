@@ -15,7 +15,7 @@ from __future__ import annotations
 import csv
 import os
 import shlex
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
@@ -54,12 +54,8 @@ class CsvTable:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.incomplete = 0  # rows left out so far
-        try:
-            with self._open() as file:
-                above, row = self._beginning(file)
-            self._name_columns(above, row)
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise self._unreadable(error) from error
+        with self._opened(0) as file:
+            self._name_columns(*self._beginning(file))
 
     def _beginning(self, file: TextIO) -> tuple[list[str], str]:
         """Lines above the first row, and that row: the first line of more numbers than words, else the second line."""
@@ -125,35 +121,25 @@ class CsvTable:
         where = [self.names.index(name) for name in columns]
         size = self.path.stat().st_size
         blocks = [np.empty((0, len(columns)))]
-        try:
-            with self._open() as file:
-                for _ in range(self._lines_before):
-                    file.readline()
-                line, done = self._lines_before + 1, 0
-                while lines := file.readlines(_BLOCK):
-                    blocks.append(self._numbers(lines, line, where))
-                    line += len(lines)
-                    done += sum(map(len, lines))
-                    progress("reading", min(done, size), size)
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise self._unreadable(error) from error
+        line, done = self._lines_before + 1, 0
+        with self._opened(self._lines_before) as file:
+            while lines := file.readlines(_BLOCK):
+                blocks.append(self._numbers(lines, line, where))
+                line += len(lines)
+                done += sum(map(len, lines))
+                progress("reading", min(done, size), size)
         progress("reading", size, size)
         return np.concatenate(blocks)
 
     def rows(self) -> Iterator[list[str]]:
         """Fields of each row, as they are. Raises BagError."""
-        try:
-            with self._open() as file:
-                for _ in range(self._lines_before):
-                    file.readline()
-                for line in file:
-                    if not line.isspace():
-                        text = line.rstrip("\n")
-                        fields = text.split(self._delimiter)
-                        plain = len(fields) == len(self.names) and not _has_lists(text)
-                        yield fields if plain else self._fields(text)
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise self._unreadable(error) from error
+        with self._opened(self._lines_before) as file:
+            for line in file:
+                if not line.isspace():
+                    text = line.rstrip("\n")
+                    fields = text.split(self._delimiter)
+                    plain = len(fields) == len(self.names) and not _has_lists(text)
+                    yield fields if plain else self._fields(text)
 
     def line(self, fields: Iterable[str]) -> str:
         """A line of such a table; what holds the delimiter is quoted."""
@@ -161,8 +147,16 @@ class CsvTable:
         quoted = ('"{}"'.format(f.replace('"', '""')) if mark in f else f for f in fields)
         return mark.join(quoted) + "\n"
 
-    def _open(self) -> TextIO:
-        return self.path.open(encoding="utf-8-sig")
+    @contextmanager
+    def _opened(self, above: int) -> Iterator[TextIO]:
+        """The file behind so many lines. Raises BagError for what goes wrong with it."""
+        try:
+            with self.path.open(encoding="utf-8-sig") as file:
+                for _ in range(above):
+                    file.readline()
+                yield file
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
+            raise self._unreadable(error) from error
 
     def _fields(self, line: str) -> list[str]:
         fields = _split(line, self._delimiter)

@@ -158,12 +158,15 @@ def _by_joint(table: CsvTable) -> tuple[str, ...]:
             "them with `ros2 bag record`"
         )
     fields = [found[0] if (found := _FIELD.findall(name)) else ("", "", "") for name in table.names]
+    named = {(before, number) for before, kind, number in fields if kind not in ("name", "")}
     joints = {
         (before, number): text.strip(" '")
         for (before, kind, number), text in zip(fields, table.first, strict=False)
-        if kind == "name" and not is_number(text)
+        if kind == "name" and (before, number) in named and not is_number(text)
     }
-    table.same = [k for k, field in enumerate(fields) if field[1] == "name" and joints]
+    table.same = [
+        k for k, field in enumerate(fields) if field[1] == "name" and field[::2] in joints
+    ]
     return tuple(
         f"{before}{kind}.{joints[before, number]}"
         if (before, number) in joints
