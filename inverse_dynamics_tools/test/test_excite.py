@@ -98,7 +98,7 @@ def test_table_compares_with_the_stored_motion_of_the_robot(
     out = tmp_path / "motion.yaml"
     assert main(["excite", "--robot", "panda_simulated", "--out", str(out)]) == 0
     printed = capsys.readouterr().out
-    assert re.search(r"torque +before +stored +after +unit", printed)
+    assert re.search(r"unit +from +to +speed +acc\. +torque +before +stored +after", printed)
 
 
 def test_share_of_the_limits_is_kept(arm: Path) -> None:

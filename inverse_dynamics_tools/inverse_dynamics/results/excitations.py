@@ -201,12 +201,12 @@ _AFTER = {"description": "before", "given": "given", "stored": "stored", "motion
 
 def excitation_table(result: ExcitationResult) -> ReportTable:
     """Motion of each joint, and uncertainty of its predicted torque before and after."""
-    speed, acceleration, torque = 100 * result.greatest
-    columns = {"from": result.travel[:, 0], "to": result.travel[:, 1], "speed [%]": speed}
-    columns |= {"acc. [%]": acceleration, "torque [%]": torque}
+    speed, acceleration, torque = np.rint(100 * result.greatest).astype(int)
+    columns = {"from": result.travel[:, 0], "to": result.travel[:, 1]}
+    columns |= {"speed": speed, "acc.": acceleration, "torque": torque}
     columns |= {_AFTER[name]: values for name, values in result.deviation.items()}
     note = (
-        "speed, acceleration (acc.), torque: greatest values as shares of their limits; then the standard "
+        "speed, acceleration (acc.), torque: greatest values in % of their limits; then the standard "
         "deviation of predicted torques, mean over random states within the limits: before any recording"
         + (", after the given recordings" if "given" in result.deviation else "")
         + (", after the stored motion for the same time" if "stored" in result.deviation else "")
