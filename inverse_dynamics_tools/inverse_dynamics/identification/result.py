@@ -32,12 +32,12 @@ if TYPE_CHECKING:
     from inverse_dynamics.robot.robots import Robot
 
 COLUMNS = {
-    "urdf": "the description, without friction",
-    "present": "the model of the run configuration",
-    "present_refitted": "its rigid bodies, with friction and offset fitted to the same data",
-    "identified": "the new model",
+    "urdf": "URDF",  # the description, without friction
+    "present": "present model",  # of the run configuration
+    "present_refitted": "present, friction refitted",  # its rigid bodies; friction fitted to the same data
+    "identified": "identified",
 }
-"""What held-out errors are given of, in the order of tables. Those that don't exist are left out."""
+"""Models that held-out errors are given of, and their titles, in the order of tables; some may be absent."""
 
 LAWS = {
     "step": "viscous friction and a step",

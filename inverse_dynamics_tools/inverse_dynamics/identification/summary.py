@@ -13,14 +13,6 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.identification.result import Choice, DriveGain, Identification, Level
 
-TITLES = {
-    "urdf": "URDF",
-    "present": "present model",
-    "present_refitted": "present, friction refitted",
-    "identified": "identified",
-}
-"""What names of COLUMNS are called, in the order of tables."""
-
 
 def choices_told(found: Identification) -> list[tuple[str, str]]:
     """What was chosen and why: name and sentence."""

@@ -13,7 +13,8 @@ from inverse_dynamics.base.wording import counted
 from inverse_dynamics.evaluation.evaluation import joint_errors
 from inverse_dynamics.figures.scene import Scene, read_scene
 from inverse_dynamics.identification.knowledge import PARAMETERS, UNITS
-from inverse_dynamics.identification.summary import TITLES, choices_told
+from inverse_dynamics.identification.result import COLUMNS
+from inverse_dynamics.identification.summary import choices_told
 from inverse_dynamics.report.page import (
     ReportRun,
     ReportSummary,
@@ -66,7 +67,7 @@ def _run(found: Identification, recording: str, several: bool) -> ReportRun:
         assumptions=_block_facts(blocks),
         links=scene.links,
         scene_notes=scene.notes,
-        others={TITLES[column]: values for column, values in computed.items()},
+        others={COLUMNS[column]: values for column, values in computed.items()},
         bands=bands_of(time, np.concatenate([block.band for block in blocks])),
     )
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.wording import counted, solver_name
-from inverse_dynamics.identification.summary import TITLES
+from inverse_dynamics.identification.result import COLUMNS
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -156,7 +156,7 @@ def held_out_table(
     none = np.full(len(found.joints), np.nan)
     columns = {
         heading: rmse.get(column, none)
-        for column, heading in TITLES.items()
+        for column, heading in COLUMNS.items()
         if column in found.held_out
     }
     columns[_IN_BAND] = 100 * (found.coverage if coverage is None else coverage)

@@ -113,13 +113,9 @@ def write_identification(
     with files_written_whole(list(texts)) as fresh:
         for file, text in zip(fresh, texts.values(), strict=True):
             write_text(file, text)
-        _check_model(dict(zip(texts, fresh, strict=True))[files.model])
+        # the solver's own reader computes the rows of checks, or raises SolverError
+        _core.Solver(RIGID_BODY, model=str(dict(zip(texts, fresh, strict=True))[files.model]))
     return files
-
-
-def _check_model(file: Path) -> None:
-    """The solver's own reader computes the rows of checks. Raises SolverError."""
-    _core.Solver(RIGID_BODY, model=str(file))
 
 
 def _run_configuration(found: Identification, files: IdentificationFiles) -> str:
