@@ -15,13 +15,6 @@ namespace {
 
 using chain_dynamics::joined;
 
-template <class T>
-void replace(T& field, const std::optional<T>& change) {
-  if (change) {
-    field = *change;
-  }
-}
-
 /// What errors call the place of a field.
 std::string placeOf(const RunConfiguration& robot, const std::string& field) {
   return robot.file.empty() ? "parameter '" + field + "'" : robot.file + ": " + field;
@@ -29,30 +22,16 @@ std::string placeOf(const RunConfiguration& robot, const std::string& field) {
 
 }  // namespace
 
-RunConfiguration withChanges(RunConfiguration robot, const RunConfigurationChanges& changes) {
-  if (changes.urdf) {
-    robot.model.clear();
-  }
-  if (changes.accelerations || changes.cutoff) {
-    robot.cutoff = changes.cutoff;
-  }
-  replace(robot.plugin, changes.plugin);
-  replace(robot.urdf, changes.urdf);
-  replace(robot.root, changes.root);
-  replace(robot.tip, changes.tip);
-  replace(robot.topic, changes.topic);
-  replace(robot.effort, changes.effort);
-  replace(robot.accelerations, changes.accelerations);
-  replace(robot.friction, changes.friction);
-  replace(robot.joints, changes.joints);
-  replace(robot.drive_gains, changes.drive_gains);
-  if (changes.gravity) {
-    robot.gravity = changes.gravity;
-  }
-  for (const auto& [name, value] : changes.parameters) {
-    robot.parameters[name] = value;
-  }
-  return robot;
+void replaceDescription(RunConfiguration& robot, const std::string& urdf) {
+  robot.urdf = urdf;
+  robot.model.clear();
+}
+
+void replaceAccelerations(RunConfiguration& robot, const std::optional<std::string>& method,
+                          const std::optional<double>& cutoff) {
+  if (!method && !cutoff) return;
+  robot.accelerations = method.value_or(robot.accelerations);
+  robot.cutoff = cutoff;
 }
 
 SolverParameters solverParameters(const RunConfiguration& robot) {

@@ -115,24 +115,22 @@ TEST_F(RunConfigurations, HoldWhatTheFileSays) {
   EXPECT_EQ(solverParameters(least), (SolverParameters{{"friction", true}}));
 }
 
-TEST_F(RunConfigurations, ChangesReplaceFieldsAndWhatBelongsToThem) {
+TEST_F(RunConfigurations, ChangesReplaceWhatBelongsToAField) {
   RunConfiguration robot;
   robot.model = "model.yaml";
   robot.accelerations = "low-pass";
   robot.cutoff = 5;
-  robot.parameters = {{"a", 1.0}, {"b", 2.0}};
-  EXPECT_EQ(withChanges(robot, {}).cutoff, 5);
-  RunConfigurationChanges changes;
-  changes.urdf = "arm.urdf";
-  changes.accelerations = "given";
-  changes.parameters = {{"b", 3.0}};
-  const RunConfiguration changed = withChanges(robot, changes);
-  EXPECT_EQ(changed.urdf, "arm.urdf");
-  EXPECT_EQ(changed.model, "") << "the description stands instead of it";
-  EXPECT_EQ(changed.cutoff, std::nullopt) << "it belonged to the other method";
-  EXPECT_EQ(changed.parameters, (SolverParameters{{"a", 1.0}, {"b", 3.0}}));
-  changes.cutoff = 7;
-  EXPECT_EQ(withChanges(robot, changes).cutoff, 7);
+  replaceAccelerations(robot, {}, {});
+  EXPECT_EQ(robot.cutoff, 5);
+  replaceDescription(robot, "arm.urdf");
+  EXPECT_EQ(robot.urdf, "arm.urdf");
+  EXPECT_EQ(robot.model, "") << "the description stands instead of it";
+  replaceAccelerations(robot, "given", {});
+  EXPECT_EQ(robot.accelerations, "given");
+  EXPECT_EQ(robot.cutoff, std::nullopt) << "it belonged to the other method";
+  replaceAccelerations(robot, {}, 7);
+  EXPECT_EQ(robot.accelerations, "given");
+  EXPECT_EQ(robot.cutoff, 7);
 }
 
 TEST_F(RunConfigurations, NameTheJointsOfRecordingsInTheOrderOfTheChain) {

@@ -15,7 +15,6 @@ namespace inverse_dynamics_ros {
 namespace {
 
 using inverse_dynamics_evaluation::RunConfiguration;
-using inverse_dynamics_evaluation::RunConfigurationChanges;
 using inverse_dynamics_evaluation::SolverParameters;
 using inverse_dynamics_solver::InverseDynamicsSolver;
 using inverse_dynamics_solver::Parameters;
@@ -27,18 +26,20 @@ std::optional<T> givenOf(const Parameters& given, const std::string& name) {
   return value && value->empty() ? std::nullopt : value;
 }
 
-RunConfigurationChanges changesOf(const Parameters& given) {
-  RunConfigurationChanges changes;
-  changes.plugin = givenOf<std::string>(given, "plugin_name");
-  changes.joints = givenOf<std::vector<std::string>>(given, "joints");
-  changes.effort = givenOf<std::string>(given, "effort");
-  changes.drive_gains = givenOf<std::vector<double>>(given, "drive_gains");
-  changes.accelerations = givenOf<std::string>(given, "accelerations");
-  changes.cutoff = given.get<double>("cutoff");
-  if (givenOf<std::string>(given, "robot_description")) {
-    changes.urdf = "";  // nor is the model of the run configuration computed from
-  }
-  return changes;
+// The run configuration with its fields replaced by given parameters.
+RunConfiguration configurationOf(const Parameters& given) {
+  using Text = std::string;
+  const auto name = givenOf<Text>(given, "robot");
+  RunConfiguration robot =
+      name ? inverse_dynamics_evaluation::readRunConfiguration(*name) : RunConfiguration();
+  robot.plugin = givenOf<Text>(given, "plugin_name").value_or(robot.plugin);
+  robot.joints = givenOf<std::vector<Text>>(given, "joints").value_or(robot.joints);
+  robot.effort = givenOf<Text>(given, "effort").value_or(robot.effort);
+  robot.drive_gains =
+      givenOf<std::vector<double>>(given, "drive_gains").value_or(robot.drive_gains);
+  replaceAccelerations(robot, givenOf<Text>(given, "accelerations"), given.get<double>("cutoff"));
+  if (givenOf<Text>(given, "robot_description")) replaceDescription(robot, "");
+  return robot;
 }
 
 // Those of the run configuration, and those given below `ids.` instead of them.
@@ -54,7 +55,7 @@ Parameters solverParametersOf(const RunConfiguration& robot, const Parameters& g
   return all;
 }
 
-// Nothing where there is no description, or none that can be read.
+// None if there is no description, or if it can't be read.
 std::optional<chain_dynamics::RobotDescription> described(const std::string& description) {
   try {
     return description.empty() ? std::nullopt
@@ -67,13 +68,9 @@ std::optional<chain_dynamics::RobotDescription> described(const std::string& des
 }  // namespace
 
 NodeRobot::NodeRobot(const Parameters& given)
-    : description_(given.get<std::string>("robot_description").value_or("")) {
-  const auto name = givenOf<std::string>(given, "robot");
-  configuration_ = inverse_dynamics_evaluation::withChanges(
-      name ? inverse_dynamics_evaluation::readRunConfiguration(*name) : RunConfiguration(),
-      changesOf(given));
-  solver_parameters_ = solverParametersOf(configuration_, given);
-}
+    : configuration_(configurationOf(given)),
+      description_(given.get<std::string>("robot_description").value_or("")),
+      solver_parameters_(solverParametersOf(configuration_, given)) {}
 
 std::string NodeRobot::description() const {
   if (configuration_.urdf.empty()) return description_;

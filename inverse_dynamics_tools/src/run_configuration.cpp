@@ -98,16 +98,18 @@ Robot withChanges(const Robot& robot, const py::kwargs& given) {
   for (const auto& [name, value] : given) {
     if (!value.is_none()) stated[name] = value;
   }
-  const auto replace = py::module_::import("dataclasses").attr("replace");
-  const auto to = replace(robot, **stated).cast<Robot>();
-  evaluation::RunConfigurationChanges changes;  // those that change others too, or are added
-  if (stated.contains("urdf")) changes.urdf = to.urdf;
-  if (stated.contains("accelerations")) changes.accelerations = to.accelerations;
-  if (stated.contains("cutoff")) changes.cutoff = to.cutoff;
-  if (stated.contains("parameters")) changes.parameters = to.parameters;
-  stated.attr("pop")("parameters", py::none());
-  return replace(evaluation::withChanges(robot, changes), **stated).cast<Robot>();
+  const auto to = py::module_::import("dataclasses").attr("replace")(robot, **stated).cast<Robot>();
+  Robot changed = to;  // but for what changes with it, or is added
+  if (stated.contains("urdf")) replaceDescription(changed, to.urdf);
+  if (stated.contains("model")) changed.model = to.model;
+  if (stated.contains("accelerations") || stated.contains("cutoff")) {
+    const auto cutoff = stated.contains("cutoff") ? to.cutoff : std::nullopt;
+    replaceAccelerations(changed, to.accelerations, cutoff);
+  }
+  changed.parameters.insert(robot.parameters.begin(), robot.parameters.end());
+  return changed;
 }
+
 evaluation::EffortOptions effortOptions(const Robot& robot, const SolverObject& solver,
                                         const std::optional<std::string>& option,
                                         const std::string& format) {

@@ -47,25 +47,14 @@ struct RunConfiguration {
   std::string accelerations = "auto";  ///< name() of an AccelerationMethod
   std::optional<double> cutoff;        ///< Hz; none: chosen from the data
   SolverParameters parameters;         ///< of the solver, beyond the fields above
-  /// What the names of a recorded table's columns don't say: see columns.py and table_logs.py.
+  /// Format of a recorded table, where its column names don't tell: see columns.py, table_logs.py.
   std::string columns;             ///< `KEY=PATTERN, ...`
   std::vector<std::string> scale;  ///< `KEY=NUMBER`, or a unit, or one for each joint
   std::vector<double> sign;        ///< of each joint, 1 or -1; none: 1
   std::optional<double> rate;      ///< Hz; of samples in a table without time
-  std::string source;              ///< where description and figures come from
+  std::string source;              ///< where description and values come from
   /// G of `q_motor = G q`, where states of motors are recorded: n ratios, or n x n numbers row by row.
   std::vector<double> gears;
-};
-
-/// What stands instead of a run configuration's fields; nothing: the field stays.
-struct RunConfigurationChanges {
-  std::optional<std::string> plugin, urdf, root, tip, topic, effort, accelerations;
-  std::optional<std::array<double, 3>> gravity;
-  std::optional<bool> friction;
-  std::optional<std::vector<std::string>> joints;
-  std::optional<std::vector<double>> drive_gains;
-  std::optional<double> cutoff;
-  SolverParameters parameters;  ///< added to the others, or instead of them, one by one
 };
 
 /// Names of the run configurations that the sourced workspaces bring, sorted.
@@ -84,18 +73,20 @@ RunConfiguration readRunConfiguration(const std::string& name_or_file);
 /// what recorded efforts mean is found from the data.
 RunConfiguration robotOfDescription(const std::string& urdf);
 
-/// The run configuration with changes.
-///
-/// A description that is given stands instead of a model file too, and a method of accelerations
-/// without the cut-off that belongs to the configuration's own.
-RunConfiguration withChanges(RunConfiguration robot, const RunConfigurationChanges& changes);
+/// Gives a robot another description, by its path, which stands instead of a model file too.
+void replaceDescription(RunConfiguration& robot, const std::string& urdf);
 
-/// What is below `parameters`; names of nested maps are joined by dots.
+/// Gives a robot another method of accelerations, or another cut-off [Hz]: that of the configuration
+/// belonged to its own method.
+void replaceAccelerations(RunConfiguration& robot, const std::optional<std::string>& method,
+                          const std::optional<double>& cutoff);
+
+/// Parameters of a solver in YAML; names of nested maps are joined by dots.
 ///
 /// @throws what the map throws: a key of the configuration's own; a list of several types.
 SolverParameters readSolverParameters(const chain_dynamics::LocatedMap& map);
 
-/// All that the solver's initialize() takes; what isn't stated is left out.
+/// Parameters for the solver's initialize(), without those that aren't stated.
 SolverParameters solverParameters(const RunConfiguration& robot);
 
 /// Names in a recording of the solver's joints, in the order of the chain.
@@ -104,7 +95,7 @@ SolverParameters solverParameters(const RunConfiguration& robot);
 std::vector<std::string> recordedNames(const RunConfiguration& robot,
                                        const std::vector<std::string>& joint_names);
 
-/// What the run configuration states of efforts; drive gains are the solver's where it has none.
+/// The run configuration's statements about efforts; drive gains default to the solver's.
 ///
 /// @throws ConfigurationError: not one drive gain per joint; one that isn't above 0.
 EffortOptions effortOptions(const RunConfiguration& robot,
