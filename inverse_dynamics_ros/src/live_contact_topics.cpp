@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
+#include <inverse_dynamics_control/joint_parameters.hpp>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -72,22 +73,25 @@ LiveContactTopics::LiveContactTopics(rclcpp::Node& node,
 }
 
 LiveContactOptions LiveContactTopics::options(const LiveRobot& robot) const {
-  const Eigen::Index n = robot.solver->jointCount();
   live_node::Params::ExternalTorques p = parameters_;
   if (!p.contacts_file.empty()) {
     readFile(readContactFile(p.contacts_file, robot.solver->jointNames()), given_, p);
   }
   LiveContactOptions options;
   EstimatorOptions& estimator = options.estimator;
-  estimator.gain = Eigen::VectorXd::Constant(n, p.gain);
+  const auto numbers = [&](const std::string& name, const std::vector<double>& given) {
+    return inverse_dynamics_control::jointNumbers(kNamespace + name, given,
+                                                  robot.solver->jointNames(), {});
+  };
+  estimator.gain = numbers("gain", {p.gain});
   estimator.velocity =
       p.velocities == "measured" ? VelocitySource::kMeasured : VelocitySource::kPositions;
   estimator.tracking = p.tracking;
   estimator.compensated.gravity = robot.efforts_without_gravity;
-  estimator.friction_band = perJoint(p.friction_band, n);
+  estimator.friction_band = numbers("friction_band", p.friction_band);
   estimator.longest_period = p.longest_period;
-  options.thresholds = perJoint(p.thresholds, n);
-  options.wrench.noise = perJoint(p.noise, n);
+  options.thresholds = numbers("thresholds", p.thresholds);
+  options.wrench.noise = numbers("noise", p.noise);
   options.wrench.force = p.expected_force;
   options.wrench.torque = p.expected_torque;
   options.wrench_frame = p.wrench_frame == "root" ? WrenchFrame::kRoot : WrenchFrame::kTip;

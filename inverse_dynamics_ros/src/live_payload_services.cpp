@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <inverse_dynamics_control/joint_parameters.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,7 +76,8 @@ LivePayloadOptions LivePayloadServices::options() const {
   LivePayloadOptions options;
   options.cutoff = params_.cutoff;
   options.longest_gap = params_.longest_gap;
-  options.noise = perJoint(noise, robot_.solver->jointCount());
+  options.noise = inverse_dynamics_control::jointNumbers("estimate_payload.noise", noise,
+                                                         robot_.solver->jointNames());
   options.carried = carried_();
   options.without_gravity = robot_.efforts_without_gravity;
   if (options.without_gravity && options.carried.mass > 0) {

@@ -7,7 +7,6 @@
 
 #pragma once
 
-#include <Eigen/Core>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <string>
@@ -25,12 +24,5 @@ struct LiveRobot {
   std::string root, tip;                 ///< links; empty: not known
   bool efforts_without_gravity = false;  ///< measured ones
 };
-
-/// A number per joint; a single number stands for all n.
-inline Eigen::VectorXd perJoint(const std::vector<double>& numbers, Eigen::Index n) {
-  if (numbers.size() == 1) return Eigen::VectorXd::Constant(n, numbers.front());
-  return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
-                                           static_cast<Eigen::Index>(numbers.size()));
-}
 
 }  // namespace inverse_dynamics_ros

@@ -3,10 +3,9 @@
 #include "retiming.hpp"
 
 #include <algorithm>
-#include <chain_dynamics/robot_description.hpp>
 #include <cmath>
+#include <inverse_dynamics_control/joint_parameters.hpp>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
-#include <limits>
 #include <rclcpp/duration.hpp>
 
 #include "user_error.hpp"
@@ -24,23 +23,6 @@ using inverse_dynamics_timing::Trajectory;
 constexpr int kPlaces = 1000;       // of a path, at which positions are checked
 constexpr double kRounding = 1e-6;  // rad
 
-// One number for each joint, as given, else as described.
-VectorXd chosen(const std::string& name, const std::vector<double>& given,
-                const VectorXd& described) {
-  if (given.empty()) return described;
-  if (given.size() == 1) return VectorXd::Constant(described.size(), given.front());
-  if (static_cast<Index>(given.size()) == described.size())
-    return VectorXd::Map(given.data(), described.size());
-  throw UserError("parameter 'limits." + name + "'",
-                  std::to_string(described.size()) + " numbers, or one for all joints",
-                  std::to_string(given.size()), "give one for each joint");
-}
-
-// None where the user gives none.
-VectorXd optional(const std::string& name, const std::vector<double>& given, Index joints) {
-  return given.empty() ? VectorXd() : chosen(name, given, VectorXd::Zero(joints));
-}
-
 void copy(const VectorXd& from, std::vector<double>& to) { to.assign(from.begin(), from.end()); }
 
 }  // namespace
@@ -57,30 +39,23 @@ Retiming::Retiming(const NodeRobot& robot, const std::string& description,
 }
 
 void Retiming::describeLimits(const std::string& description) {
-  const auto n = static_cast<Index>(joints_.size());
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  VectorXd torque = VectorXd::Constant(n, kNone), velocity = torque;
-  lower_ = -torque, upper_ = torque;
-  if (!description.empty()) {
-    const auto described = chain_dynamics::robotFromUrdf(description);
-    for (Index j = 0; j < n; ++j) {
-      const std::size_t joint =
-          described.jointIndex(solver_->jointNames()[static_cast<std::size_t>(j)]);
-      if (joint == chain_dynamics::RobotDescription::kNone) continue;
-      const chain_dynamics::JointLimits& limits = described.joints[joint].limits;
-      torque[j] = limits.effort, velocity[j] = limits.velocity;
-      lower_[j] = limits.lower, upper_[j] = limits.upper;
-    }
-  }
-  limits_.torque = chosen("torque", params_.limits.torque, torque);
+  const auto described =
+      inverse_dynamics_control::describedLimits(description, solver_->jointNames());
+  lower_ = described.reference.lower, upper_ = described.reference.upper;
+  const auto chosen = [this](const std::string& name, const std::vector<double>& given,
+                             const chain_dynamics::OwnedVector& otherwise) {
+    return inverse_dynamics_control::jointNumbers("limits." + name, given, joints_, otherwise);
+  };
+  limits_.torque = chosen("torque", params_.limits.torque, described.effort);
   if (!limits_.torque.allFinite()) {
     throw UserError("parameter 'limits.torque'",
                     "limits of torque [N m], here or in the robot description",
                     "neither for all joints", "set it");
   }
-  limits_.velocity = chosen("velocity", params_.limits.velocity, velocity).cwiseMin(1e6);
-  limits_.acceleration = optional("acceleration", params_.limits.acceleration, n);
-  limits_.jerk = optional("jerk", params_.limits.jerk, n);
+  limits_.velocity =
+      chosen("velocity", params_.limits.velocity, described.reference.velocity).cwiseMin(1e6);
+  limits_.acceleration = chosen("acceleration", params_.limits.acceleration, {});
+  limits_.jerk = chosen("jerk", params_.limits.jerk, {});
 }
 
 void Retiming::carry(const inverse_dynamics_control::RigidBody& body) {

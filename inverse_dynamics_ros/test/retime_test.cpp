@@ -84,10 +84,10 @@ TEST(Retiming, RefusesWhatCannotBeTimed) {
   weak.limits.torque = {3.0};
   EXPECT_NE(refusal(path(0.5), weak).find("slide"), std::string::npos);
   weak.limits.torque = {3.0, 4.0};
-  EXPECT_EQ(
-      refusal(path(0.5), weak),
-      "parameter 'limits.torque': expected 1 numbers, or one for all joints, got 2; give one for "
-      "each joint");
+  EXPECT_EQ(refusal(path(0.5), weak),
+            "parameter 'limits.torque': wrong size: expected 1 numbers, or one for all, got 2; "
+            "give one for "
+            "each of the joints slide");
 }
 
 // A node with its client.
