@@ -69,7 +69,7 @@ void sayAll(const rclcpp::Logger& logger, const std::vector<std::string>& notes,
   for (std::size_t k = first; k < notes.size(); ++k) RCLCPP_WARN(logger, "%s", notes[k].c_str());
 }
 
-// The run configuration, if there is one, and where its description is from.
+// Logs the run configuration, if any, and the source of its description.
 void sayRobot(const rclcpp::Logger& logger, const RunConfiguration& robot) {
   if (!robot.file.empty()) {
     say(logger, "robot: " + robot.name + ", " + robot.description + "; robot description: " +
@@ -78,7 +78,7 @@ void sayRobot(const rclcpp::Logger& logger, const RunConfiguration& robot) {
 }
 
 void run(rclcpp::Node& node) {
-  declareSolverParameters(node);
+  declareRobotParameters(node);
   const evaluate_solver::ParamListener listener(node.get_node_parameters_interface(),
                                                 node.get_logger());
   inverse_dynamics_solver::rejectUndeclared(*node.get_node_parameters_interface());

@@ -38,7 +38,7 @@ class LiveNode::Implementation {
 
   explicit Implementation(LiveNode& node)
       : node_(node),
-        listener_((declareSolverParameters(node), node.get_node_parameters_interface()),
+        listener_((declareRobotParameters(node), node.get_node_parameters_interface()),
                   node.get_logger()),
         params_(listener_.get_params()),
         robot_(givenParameters(node)),
@@ -72,7 +72,7 @@ class LiveNode::Implementation {
  private:
   rclcpp::Logger logger() const { return node_.get_logger(); }
 
-  // No verdict without a recording.
+  // The live node can't compare meanings: that needs a recording.
   static void requireMeaning(const inverse_dynamics_evaluation::Effort& effort) {
     if (effort.meaning == inverse_dynamics_evaluation::kAutomatic) {
       throw UserError("parameter 'effort'",
@@ -82,7 +82,8 @@ class LiveNode::Implementation {
     }
   }
 
-  // With the description of the parameters, or the solver's own model, or when one comes.
+  // Opens the solver with the description of the parameters, else its own model; else waits for a
+  // description.
   void openSolver() {
     const std::string description = robot_.description();
     try {
@@ -112,7 +113,7 @@ class LiveNode::Implementation {
     }
   }
 
-  // Replaces the solver, or throws and leaves it as it was.
+  // Replaces the solver; if it throws, nothing changes.
   void useSolver(const std::string& robot_description) {
     const auto solver = robot_.makeSolver(robot_description);
     const auto& robot = robot_.configuration();
@@ -139,7 +140,7 @@ class LiveNode::Implementation {
                 1e3 * live_->delay());
   }
 
-  // All of them, or none.
+  // Gives the robot to all parts, or to none.
   void useRobot(const LiveRobot& robot) {
     auto contact = contact_ == nullptr ? nullptr : contact_->make(robot);
     load_.use(load_.make(robot), robot);
@@ -187,7 +188,7 @@ class LiveNode::Implementation {
     }
   }
 
-  // Counts and logs what isn't as it should be.
+  // Counts and logs unusual outcomes.
   void report(LiveTorques::Outcome outcome) {
     LiveCounts& counts = diagnostics_.counts();
     switch (outcome) {
@@ -236,7 +237,7 @@ class LiveNode::Implementation {
     }
   }
 
-  // Says now and then what is being waited for.
+  // Logs from time to time what the node waits for.
   void remind() {
     if (!waiting_for_.empty()) {
       RCLCPP_WARN(logger(), "still waiting for a robot description on %s: %zu publisher(s)",
@@ -252,7 +253,7 @@ class LiveNode::Implementation {
   }
 
   LiveNode& node_;
-  std::shared_ptr<void> suggesting_;  // what a misspelt parameter meant
+  std::shared_ptr<void> suggesting_;  // suggests names for misspelt parameters
   live_node::ParamListener listener_;
   live_node::Params params_;
   NodeRobot robot_;

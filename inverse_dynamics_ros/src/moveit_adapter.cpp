@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <class_loader/class_loader.hpp>
 #include <cmath>
+#include <inverse_dynamics_ros/robot_parameters.hpp>
 #include <memory>
 #include <moveit/planning_interface/planning_response_adapter.hpp>
 #include <moveit/robot_trajectory/robot_trajectory.hpp>
@@ -25,6 +26,7 @@ class AddTorqueLimitedTiming : public planning_interface::PlanningResponseAdapte
   void initialize(const rclcpp::Node::SharedPtr& node, const std::string& pipeline) override {
     logger_ = node->get_logger().get_child("retime");
     const std::string prefix = pipeline + ".retime.";
+    const robot_parameters::ParamListener of_robot(node, prefix);
     const retime::ParamListener listener(node, prefix);
     const NodeRobot robot(givenParameters(*node, prefix));
     std::string description = robot.description();

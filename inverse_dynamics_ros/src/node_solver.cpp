@@ -2,9 +2,12 @@
 
 #include "node_solver.hpp"
 
+#include <inverse_dynamics_ros/robot_parameters.hpp>
+
 namespace inverse_dynamics_ros {
 
-void declareSolverParameters(rclcpp::Node& node) {
+void declareRobotParameters(rclcpp::Node& node) {
+  const robot_parameters::ParamListener read_only(&node);
   const auto& overrides = node.get_node_parameters_interface()->get_parameter_overrides();
   for (const auto& [name, value] : overrides) {
     if (name.rfind(kSolverNamespace + ".", 0) != 0) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What the user has given a node of its parameters.
+/// Parameters that the user has set.
 
 #pragma once
 
@@ -12,12 +12,13 @@
 
 namespace inverse_dynamics_ros {
 
-/// Declares what the user gives below `ids.`: which parameters a solver has, only it knows.
-void declareSolverParameters(rclcpp::Node& node);
+/// Declares robot_parameters.yaml, and what the user gives below `ids.`: which parameters a solver
+/// has, only it knows.
+void declareRobotParameters(rclcpp::Node& node);
 
-/// What is set from outside (launch file, command line), without defaults.
+/// Parameters that are set from outside (launch file, command line), without defaults.
 ///
-/// @param prefix  of the names that are meant, which is left out: `retime.`.
+/// @param prefix  selects names, and is removed from them: `retime.`.
 /// @throws inverse_dynamics_solver::InvalidParameterValueException: byte arrays.
 inverse_dynamics_solver::Parameters givenParameters(rclcpp::Node& node,
                                                     const std::string& prefix = "");

@@ -22,7 +22,7 @@ class RetimeNode : public rclcpp::Node {
 
   explicit RetimeNode(const rclcpp::NodeOptions& options)
       : rclcpp::Node("retime", options),
-        listener_((declareSolverParameters(*this), get_node_parameters_interface()), get_logger()),
+        listener_((declareRobotParameters(*this), get_node_parameters_interface()), get_logger()),
         retiming_(make(NodeRobot(givenParameters(*this)))) {
     inverse_dynamics_solver::rejectUndeclared(*get_node_parameters_interface());
     service_ = create_service<Retime>(
