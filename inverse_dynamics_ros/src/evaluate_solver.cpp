@@ -16,6 +16,7 @@
 #include "interrupted.hpp"
 #include "node_solver.hpp"
 #include "output_bag.hpp"
+#include "run_program.hpp"
 #include "torque_bag.hpp"
 #include "user_error.hpp"
 
@@ -122,21 +123,8 @@ void run(rclcpp::Node& node) {
 }  // namespace inverse_dynamics_ros
 
 int main(int argc, char** argv) {
-  using inverse_dynamics_ros::Failure;
-  using inverse_dynamics_ros::Interrupted;
-  rclcpp::init(argc, argv);
-  Failure failure{inverse_dynamics_ros::kExitFine, ""};
-  const rclcpp::Logger logger = rclcpp::get_logger("evaluate_solver");
-  try {
-    auto node = std::make_shared<rclcpp::Node>("evaluate_solver");
-    inverse_dynamics_ros::run(*node);
-  } catch (const std::exception& error) {
-    failure = rclcpp::ok() ? inverse_dynamics_ros::failureOf(error)
-                           : Failure{inverse_dynamics_ros::kExitInterrupted, Interrupted().what()};
-  }
-  if (failure.code != inverse_dynamics_ros::kExitFine) {
-    RCLCPP_FATAL(logger, "%s", failure.text.c_str());
-  }
-  rclcpp::shutdown();
-  return failure.code;
+  return inverse_dynamics_ros::runProgram(argc, argv, "evaluate_solver", [] {
+    rclcpp::Node node("evaluate_solver");
+    inverse_dynamics_ros::run(node);
+  });
 }

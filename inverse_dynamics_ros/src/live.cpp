@@ -6,8 +6,10 @@
 ///     ros2 run inverse_dynamics_ros live --ros-args -p plugin_name:=package/Class
 
 #include "inverse_dynamics_ros/live_node.hpp"
-#include "run_node.hpp"
+#include "run_program.hpp"
 
 int main(int argc, char** argv) {
-  return inverse_dynamics_ros::runNode<inverse_dynamics_ros::LiveNode>(argc, argv, "live");
+  return inverse_dynamics_ros::runProgram(argc, argv, "live", [] {
+    rclcpp::spin(std::make_shared<inverse_dynamics_ros::LiveNode>(rclcpp::NodeOptions()));
+  });
 }

@@ -6,8 +6,10 @@
 ///     ros2 run inverse_dynamics_ros retime --ros-args -p plugin_name:=package/Class
 
 #include "retime_node.hpp"
-#include "run_node.hpp"
+#include "run_program.hpp"
 
 int main(int argc, char** argv) {
-  return inverse_dynamics_ros::runNode<inverse_dynamics_ros::RetimeNode>(argc, argv, "retime");
+  return inverse_dynamics_ros::runProgram(argc, argv, "retime", [] {
+    rclcpp::spin(std::make_shared<inverse_dynamics_ros::RetimeNode>(rclcpp::NodeOptions()));
+  });
 }

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// The main function of this package's programs.
+
+#pragma once
+
+#include <rclcpp/rclcpp.hpp>
+
+#include "interrupted.hpp"
+#include "user_error.hpp"
+
+namespace inverse_dynamics_ros {
+
+/// Does the work between rclcpp's start and end.
+///
+/// @return exit code. 0: done, or shut down; 2: something the user can repair (the last line says
+///     what); 130: interrupted.
+template <class Work>
+int runProgram(int argc, char** argv, const char* name, const Work& work) {
+  rclcpp::init(argc, argv);
+  ExitCode code = kExitFine;
+  try {
+    work();
+  } catch (const std::exception& error) {
+    const Failure failure =
+        rclcpp::ok() ? failureOf(error) : Failure{kExitInterrupted, Interrupted().what()};
+    RCLCPP_FATAL(rclcpp::get_logger(name), "%s", failure.text.c_str());
+    code = failure.code;
+  }
+  rclcpp::shutdown();
+  return code;
+}
+
+}  // namespace inverse_dynamics_ros
