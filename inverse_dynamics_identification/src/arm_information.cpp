@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rows of one joint: 10 n columns of links and its own, filtered and added up.
+/// Rows of one joint: 10 n columns of links and its own. Means of them are filtered and added up.
 struct WhitenedRows {
   WhitenedRows(double white, double correlated, double correlation_time, Index columns)
       : filter(white * white, correlated * correlated, correlation_time),
@@ -27,15 +27,17 @@ struct WhitenedRows {
         state(row),
         sum(MatrixXd::Zero(columns, columns)) {}
 
-  void add(double period) {
+  void addMean(double period, double weight) {
+    row *= weight;
     filter.advance(period);
     filter.whiten(row, state);
     sum.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    row.setZero();
   }
 
   NoiseFilter filter;
-  VectorXd row, state;
-  MatrixXd sum;  // lower triangle
+  VectorXd row, state;  // row: the sum of those of a mean
+  MatrixXd sum;         // lower triangle
 };
 
 }  // namespace
@@ -55,7 +57,14 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
   const chain_dynamics::FastModel alone(chain_dynamics::Model(withLinks(fit.parameters, nullptr)),
                                         fast_);
   MatrixXd Y(n, links);
-  VectorXd gravity(n), q(n), qd(n), qdd(n);
+  VectorXd gravity(n), q(n), qd(n), qdd(n), own_row(own);
+  MeanSpan span(noise.correlation_time);
+  double last = 0.0;  // s, of means
+  const auto end_mean = [&] {
+    for (WhitenedRows& joint : joints) joint.addMean(span.time() - last, span.weight());
+    last = span.time();
+    span.restart();
+  };
   for (const ArmData::Block& of : data.blocks_) {
     const ArmSamples& block = of.samples;
     if (block.time.size() != block.q.count) {
@@ -65,6 +74,8 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
     }
     for (WhitenedRows& joint : joints) joint.filter.restart();
     for (Index k = 0; k < block.q.count; ++k) {
+      if (span.endsBefore(block.time[k])) end_mean();
+      span.add(block.time[k]);
       for (Index j = 0; j < n; ++j) {
         q[j] = block.q(j, k);
         qd[j] = block.qd(j, k);
@@ -74,13 +85,14 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
       alone.gravityVector(q.data(), gravity.data());
       for (Index j = 0; j < n; ++j) {
         WhitenedRows& joint = joints[static_cast<std::size_t>(j)];
-        joint.row.head(links) = Y.row(j);
+        joint.row.head(links) += Y.row(j).transpose();
         const double velocity = coupling_.size() > 0 ? coupling_.row(j).dot(qd) : qd[j];
         ownColumnsAt(fit.friction[static_cast<std::size_t>(j)], velocity, qdd[j],
-                     isCoupled(j) ? 0.0 : std::abs(gravity[j]), joint.row.tail(own));
-        joint.add(k > 0 ? block.time[k] - block.time[k - 1] : 0.0);
+                     isCoupled(j) ? 0.0 : std::abs(gravity[j]), own_row);
+        joint.row.tail(own) += own_row;
       }
     }
+    if (!span.isEmpty()) end_mean();
   }
   OwnedMatrix information;
   information.resize(links + own * n, links + own * n);

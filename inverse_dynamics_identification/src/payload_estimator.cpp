@@ -119,7 +119,8 @@ struct PayloadEstimator::Impl {
         sums(solver->jointCount(), deviationCount(), given.block),
         part(deviationCount()),
         nuisance(solver->jointCount(), deviationCount()),
-        without(nuisance) {
+        without(nuisance),
+        span(given.noise.correlation_time) {
     const Index n = solver->jointCount(), K = deviationCount();
     check(given, n);
     const auto joints = static_cast<std::size_t>(n);
@@ -136,14 +137,15 @@ struct PayloadEstimator::Impl {
       prior.variance *= prior.variance;
       offsets.push_back(prior);
     }
-    states.assign(joints, Row::Zero());
+    rows.assign(joints, Row::Zero());
+    states = rows;
     arm_states.assign(joints, Eigen::VectorXd::Zero(K));
     total.assign(joints, JointSums(K));
     priors.resize(joints);
     Y = Eigen::MatrixXd::Zero(n, 10);
     torques.setZero(n);
     D = Eigen::MatrixXd::Zero(K, n);
-    arm_row.setZero(K);
+    arm_rows = arm_states;
     restart();
   }
 
@@ -158,12 +160,19 @@ struct PayloadEstimator::Impl {
   void restart() {
     sums.restart();
     for (auto& filter : filters) filter.restart();
+    span.restart();
+    for (std::size_t j = 0; j < rows.size(); ++j) clearRows(j);
     samples = 0;
   }
 
   PayloadStatus update(double time, const ConstVectorRef& q, const ConstVectorRef& qd,
                        const ConstVectorRef& qdd, const ConstVectorRef& measured);
   PayloadStatus estimate(PayloadEstimate& found);
+  void addMean();
+  void clearRows(std::size_t joint) {
+    rows[joint].setZero();
+    arm_rows[joint].setZero();
+  }
   void addUp(std::size_t blocks);
   Normal sumOfJoints();
   Vector10 solve(Normal& normal, Matrix10& H);
@@ -180,19 +189,20 @@ struct PayloadEstimator::Impl {
   Vector10 carried = Vector10::Zero();
   bool estimates_offsets = true;
   std::vector<NoiseFilter> filters;
-  std::vector<double> noise;         // N m
-  std::vector<OffsetPrior> offsets;  // as given
-  std::vector<OffsetPrior> priors;   // as estimated
-  std::vector<Row> states;           // of the filters
-  std::vector<Eigen::VectorXd> arm_states;
-  std::vector<JointSums> total;   // of all blocks
-  JointSums part;                 // of a block
-  Nuisance nuisance, without;     // of all joints, and without a block of one
+  std::vector<double> noise;                          // N m
+  std::vector<OffsetPrior> offsets;                   // as given
+  std::vector<OffsetPrior> priors;                    // as estimated
+  std::vector<Row> rows, states;                      // sums of those of a mean; of the filters
+  std::vector<Eigen::VectorXd> arm_rows, arm_states;  // likewise
+  std::vector<JointSums> total;                       // of all blocks
+  JointSums part;                                     // of a block
+  Nuisance nuisance, without;                         // of all joints, and without a block of one
+  MeanSpan span;
   chain_dynamics::OwnedMatrix Y;  // n x 10
   chain_dynamics::OwnedVector torques;
   chain_dynamics::OwnedMatrix D;   // K x n
-  Eigen::VectorXd arm_row;         // K
   double first = 0.0, last = 0.0;  // s
+  double last_mean = 0.0;          // s
   std::size_t samples = 0;
 };
 
@@ -211,20 +221,36 @@ PayloadStatus PayloadEstimator::Impl::update(double time, const ConstVectorRef& 
   torques.noalias() += Y.lazyProduct(carried);
   if (deviations) deviations->compute(q, qd, qdd, D);
   if (!torques.allFinite() || !Y.allFinite() || !D.allFinite()) return PayloadStatus::kNotFinite;
-  sums.begin(time);
+  if (span.endsBefore(time)) addMean();
+  span.add(time);
   for (Index j = 0; j < n; ++j) {
     const auto joint = static_cast<std::size_t>(j);
     Row row;
     row << Y.row(j).transpose(), 1.0, torques[j];
-    filters[joint].advance(time - last);
-    arm_row = D.col(j);
-    filters[joint].whiten(arm_row, arm_states[joint]);
-    sums.add(joint, filters[joint].innovations(row, states[joint]), arm_row);
+    rows[joint] += row;
+    arm_rows[joint] += D.col(j);
   }
   if (samples == 0) first = time;
   last = time;
   ++samples;
   return PayloadStatus::kOk;
+}
+
+/// Filters the mean of the samples since the last one.
+void PayloadEstimator::Impl::addMean() {
+  if (span.isEmpty()) return;
+  const double time = span.time(), weight = span.weight();
+  sums.begin(time);
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    rows[j] *= weight;
+    arm_rows[j] *= weight;
+    filters[j].advance(time - last_mean);
+    filters[j].whiten(arm_rows[j], arm_states[j]);
+    sums.add(j, filters[j].innovations(rows[j], states[j]), arm_rows[j]);
+    clearRows(j);
+  }
+  last_mean = time;
+  span.restart();
 }
 
 void PayloadEstimator::Impl::addUp(std::size_t blocks) {
@@ -256,6 +282,7 @@ Vector10 PayloadEstimator::Impl::solve(Normal& normal, Matrix10& H) {
     const BodyPrior prior(mass, center, extent);
     phi = mostLikelyBody(normal, prior);
     H = normal.A + prior.inertiaInformation(phi);
+    H += leastInformation(H);
     if (estimates_offsets) {
       const Matrix10 V = H.ldlt().solve(Matrix10::Identity());
       double squares = 0.0;
@@ -373,6 +400,7 @@ PayloadStatus PayloadEstimator::Impl::estimate(PayloadEstimate& found) {
       found.arm.size() != deviationCount()) {
     return PayloadStatus::kWrongSize;
   }
+  addMean();
   const std::size_t blocks = samples > 0 ? sums.blocks(last) : 0;
   if (blocks < kLeastBlocks) return PayloadStatus::kTooShort;
   addUp(blocks);

@@ -81,12 +81,19 @@ Vector10 mostLikelyBody(const Normal& normal, const BodyPrior& prior) {
   return phi;
 }
 
-Matrix10 covarianceOf(const Matrix10& information) {
+Matrix10 leastInformation(const Matrix10& information) {
   // in units in which the numbers of a body are alike: kg, 0.1 kg m, 0.01 kg m^2
   Vector10 units;
   units << 1.0, 0.1, 0.1, 0.1, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01;
-  Matrix10 scaled = units.asDiagonal() * information * units.asDiagonal();
-  scaled.diagonal().array() += std::max(kNothing * scaled.trace(), kLeastInformation);
+  const double trace = information.diagonal().dot(units.cwiseAbs2());
+  const double least = std::max(kNothing * trace, kLeastInformation);
+  return (least * units.cwiseAbs2().cwiseInverse()).asDiagonal();
+}
+
+Matrix10 covarianceOf(const Matrix10& information) {
+  const Matrix10 bounded = information + leastInformation(information);
+  const Vector10 units = bounded.diagonal().cwiseSqrt().cwiseInverse();
+  const Matrix10 scaled = units.asDiagonal() * bounded * units.asDiagonal();
   const Matrix10 inverse = scaled.ldlt().solve(Matrix10::Identity());
   const Matrix10 covariance = units.asDiagonal() * inverse * units.asDiagonal();
   return 0.5 * (covariance + covariance.transpose());

@@ -43,6 +43,10 @@ class BodyPrior {
 /// The minimum of least squares and prior, from the body of the prior on: damped Newton steps.
 Vector10 mostLikelyBody(const Normal& normal, const BodyPrior& prior);
 
+/// What is added in every direction, so that one without information has a large variance rather
+/// than rounding's, which would mix into the others.
+Matrix10 leastInformation(const Matrix10& information);
+
 /// The inverse of an information matrix: very large, but finite, where it says nothing.
 Matrix10 covarianceOf(const Matrix10& information);
 

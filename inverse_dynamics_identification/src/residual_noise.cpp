@@ -28,17 +28,38 @@ double misfit(const Eigen::Ref<const Eigen::VectorXd>& time,
   NoiseFilter filter(ratio, 1.0, correlation_time);
   Scalar state = Scalar::Zero();
   double squares = 0.0, logarithms = 0.0, last = 0.0;
-  Index count = 0;
   for (Index k = 0; k < time.size(); ++k) {
-    if (count > 0 && !(time[k] > last)) continue;
     filter.advance(time[k] - last);
     squares += filter.innovations(Scalar(residual[k]), state).squaredNorm();
     logarithms += std::log(filter.variance());
     last = time[k];
-    ++count;
   }
-  const auto samples = static_cast<double>(count);
+  const auto samples = static_cast<double>(time.size());
   return samples * std::log(squares / samples + std::numeric_limits<double>::min()) + logarithms;
+}
+
+/// Replaces samples by the means that the filter gets.
+void takeMeans(Eigen::VectorXd& time, Eigen::MatrixXd& residuals, double correlation_time) {
+  MeanSpan span(correlation_time);
+  Index means = 0;
+  double last = 0.0;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(residuals.rows());
+  const auto end = [&] {
+    time[means] = span.time();
+    residuals.col(means++) = sum * span.weight();
+    sum.setZero();
+    span.restart();
+  };
+  for (Index k = 0; k < time.size(); ++k) {
+    if (k > 0 && !(time[k] > last)) continue;
+    last = time[k];
+    if (span.endsBefore(last)) end();
+    span.add(last);
+    sum += residuals.col(k);
+  }
+  end();
+  time.conservativeResize(means);
+  residuals.conservativeResize(Eigen::NoChange, means);
 }
 
 void requireArgument(bool fine, const std::string& argument, const std::string& expected,
@@ -62,12 +83,15 @@ ResidualNoise residualNoise(const Eigen::Ref<const Eigen::VectorXd>& time,
                   "a NaN or infinity");
   requireArgument(correlation_time > 0 && std::isfinite(correlation_time), "correlation_time",
                   "a finite number above zero [s]", std::to_string(correlation_time));
+  Eigen::VectorXd at = time;
+  Eigen::MatrixXd means = residuals;
+  takeMeans(at, means, correlation_time);
   ResidualNoise noise;
   noise.correlation_time = correlation_time;
   noise.white.setZero(residuals.rows());
   noise.correlated.setZero(residuals.rows());
   for (Index j = 0; j < residuals.rows(); ++j) {
-    const Eigen::RowVectorXd residual = residuals.row(j);
+    const Eigen::RowVectorXd residual = means.row(j);
     const double total = std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
     if (!(total > kLeast)) {
       noise.white[j] = kLeast;
@@ -75,7 +99,7 @@ ResidualNoise residualNoise(const Eigen::Ref<const Eigen::VectorXd>& time,
     }
     double best = std::numeric_limits<double>::infinity(), chosen = 0.0;
     for (const double ratio : kShares) {
-      const double found = misfit(time, residual, ratio, correlation_time);
+      const double found = misfit(at, residual, ratio, correlation_time);
       if (found < best) {
         best = found;
         chosen = ratio;

@@ -2,6 +2,10 @@
 /// @file
 /// The filter that makes the noise of a joint white: the innovations of a Kalman filter whose one
 /// state is the correlated noise. It is linear, so rows of a regression may go through it.
+///
+/// Where correlated noise prevails, the filter differentiates, and amplifies the noise of
+/// accelerations, which is in the regressor too: an estimate shrinks as that noise grows. So it gets
+/// means over a tenth of the correlation time: faster noise is averaged, and counts as white.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,6 +13,35 @@
 
 namespace inverse_dynamics_identification {
 inline namespace v2 {
+
+/// A run of neighbouring samples that go through the filter as their mean.
+class MeanSpan {
+ public:
+  explicit MeanSpan(double correlation_time) : length_(kShare * correlation_time) {}
+
+  void restart() { count_ = 0; }
+  bool isEmpty() const { return count_ == 0; }
+  /// Whether a sample at this time is no longer part of it.
+  bool endsBefore(double time) const { return count_ > 0 && !(time - begin_ < length_); }
+  void add(double time) {
+    if (count_ == 0) {
+      begin_ = time;
+      sum_ = 0.0;
+    }
+    sum_ += time - begin_;
+    ++count_;
+  }
+  /// Of its samples, the mean; s.
+  double time() const { return begin_ + sum_ / count_; }
+  /// Of each sample in the mean.
+  double weight() const { return 1.0 / count_; }
+
+ private:
+  static constexpr double kShare = 0.099;  // samples of 50 Hz stay apart, rounding or not
+
+  double length_, begin_ = 0.0, sum_ = 0.0;
+  int count_ = 0;
+};
 
 /// Kalman gains of the noise of one joint: the same for all columns of a regression.
 class NoiseFilter {

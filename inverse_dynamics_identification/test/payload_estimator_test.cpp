@@ -113,7 +113,7 @@ TEST(PayloadEstimator, IsTheMinimumOfGeneralisedLeastSquaresAndPrior) {
   Motion motion;
   double t = 0.0;
   for (Index k = 0; k < kCount; ++k) {
-    t += k == 90 ? 0.7 : 0.02 + 0.01 * std::sin(static_cast<double>(k));
+    t += k == 90 ? 0.7 : 0.03 + 0.01 * std::sin(static_cast<double>(k));
     time[k] = t;
     motion.at(t);
     Eigen::MatrixXd row(kJoints, 10);

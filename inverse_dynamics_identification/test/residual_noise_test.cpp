@@ -31,7 +31,7 @@ Eigen::MatrixXd samples(const Eigen::VectorXd& time, double memory) {
 
 TEST(ResidualNoise, TellsWhiteNoiseFromNoiseThatRemembers) {
   std::mt19937 random(2);
-  std::uniform_real_distribution<double> period(0.005, 0.03);
+  std::uniform_real_distribution<double> period(0.02, 0.04);
   Eigen::VectorXd time(4000);
   double t = 5.0;
   for (double& sample : time) sample = t += period(random);
@@ -41,6 +41,13 @@ TEST(ResidualNoise, TellsWhiteNoiseFromNoiseThatRemembers) {
   EXPECT_NEAR(noise.correlated[1], 0.5, 0.1);
   EXPECT_LT(noise.white[1], 0.1 * noise.correlated[1]);
   EXPECT_NEAR(noise.white[2] / noise.correlated[2], 1.0, 0.1);
+}
+
+TEST(ResidualNoise, NoiseThatForgetsWithinMillisecondsIsWhite) {
+  // As accelerations leave it that are low-passed at 32 Hz, and efforts at 500 Hz.
+  const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(10000, 0.0, 20.0);
+  const ResidualNoise noise = residualNoise(time, samples(time, 0.005).row(1));
+  EXPECT_LT(noise.correlated[0], 0.5 * noise.white[0]);
 }
 
 TEST(ResidualNoise, FilteredNoiseIsWhiteAndOfUnitVariance) {

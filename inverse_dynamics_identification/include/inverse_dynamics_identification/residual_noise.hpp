@@ -11,7 +11,9 @@
 ///
 ///     correlated^2 exp(-dt / T),
 ///
-/// so that any distance of samples, jitter and gaps need no other treatment.
+/// so that any distance of samples, jitter and gaps need no other treatment. Samples that are closer
+/// than T / 10 count as one, with their mean: errors of accelerations are alike for some milliseconds
+/// and would be taken for noise that remembers.
 
 #pragma once
 
@@ -24,7 +26,8 @@ inline namespace v2 {
 
 /// Noise of the torques of n joints.
 struct ResidualNoise {
-  chain_dynamics::OwnedVector white;       ///< n, >= 0; standard deviation, N m (prismatic N)
+  /// n, >= 0; standard deviation of means over T / 10, N m (prismatic N)
+  chain_dynamics::OwnedVector white;
   chain_dynamics::OwnedVector correlated;  ///< n, >= 0; likewise; one of the two is > 0
   double correlation_time = 0.2;           ///< T, > 0; s
 
@@ -35,7 +38,7 @@ struct ResidualNoise {
 /// The noise of residuals: their root mean square, shared out between its two parts by maximum
 /// likelihood.
 ///
-/// The root mean square is that of the residuals as they are: take known offsets off before. A
+/// The root mean square is that of means over T / 10: take known offsets off before. A
 /// residual that is zero throughout counts as white noise of 1e-6 N m.
 ///
 /// @param time              N, s; ascending (a sample that isn't later than the one before is left
