@@ -17,7 +17,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics._core import PayloadEstimator, PayloadOptions, PayloadStatus, residual_noise
+from inverse_dynamics._core import (
+    PayloadEstimator,
+    PayloadOptions,
+    PayloadStatus,
+    ResidualNoise,
+    residual_noise,
+)
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.errors import EvaluationError
@@ -32,7 +38,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any
 
-    from inverse_dynamics._core import ArmUncertainty, PayloadEstimate, ResidualNoise, Solver
+    from inverse_dynamics._core import ArmUncertainty, PayloadEstimate, Solver
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.robot.robots import Robot
@@ -48,6 +54,7 @@ _MOST_ROUNDS = 8
 _SETTLED = 1e-3  # of the half widths
 _WORST_CENTER = 0.1  # m: half width of a center of mass that isn't known
 _ROUNDING = 1e-9  # of a variance that a projection has removed
+_PICOMETRES = 12  # digits: less is rounding
 _NO_LOAD = 1e-3  # of the weight at 1 m: the direction is known to a mm in some m
 _LEAST_SHARE = 0.02  # of a joint's noise: offsets are no more certain
 _MOST_UNEXPLAINED = 0.5  # of what the torques of a joint vary by
@@ -104,7 +111,9 @@ class Payload(Fit):
     def center_of_mass(self) -> Floats:
         """(3,) m in the tip frame; zero along `idle`."""
         center = self.estimate.center_of_mass
-        return np.asarray(center - self.idle.T @ (self.idle @ center))
+        if len(self.idle):
+            center = np.round(center - self.idle.T @ (self.idle @ center), _PICOMETRES) + 0.0
+        return np.asarray(center)
 
     @property
     def center_of_mass_half_width(self) -> Floats:
@@ -180,13 +189,18 @@ def estimate_payload(
     _require_motion(samples, where)
     found = fit_payload(samples, solver, alone, arm, where)
     idle = _idle_directions(found.estimate, solver)
-    _check(found, samples, evaluation, idle)
+    _check(found, samples, evaluation, idle, solver)
     return Payload(
         **vars(found),
         evaluation=evaluation,
         empty=None if empty is None else without.bag,
         time=samples.time,
-        notes=(*evaluation.notes_without_causes, *told, *phantom, *_notes(found, evaluation, idle)),
+        notes=(
+            *evaluation.notes_without_causes,
+            *told,
+            *phantom,
+            *_notes(found, evaluation, idle, solver),
+        ),
         idle=idle,
     )
 
@@ -231,7 +245,8 @@ def fit_payload(
     """
     before = samples.residual(solver)
     if empty is None:
-        options = PayloadOptions(residual_noise(samples.time, before - before.mean(axis=0)))
+        # White at first: what the load does to the residuals is no noise that remembers.
+        options = PayloadOptions(ResidualNoise(before.std(axis=0), np.zeros(before.shape[1])))
     else:
         options = PayloadOptions(
             empty.noise, offset=empty.offset, offset_deviation=empty.offset_deviation
@@ -291,13 +306,15 @@ def _idle_directions(found: PayloadEstimate, solver: Solver) -> Floats:
     return np.array([v for v in wide if not _bears(solver, v)]).reshape(-1, 3)
 
 
-def _bears(solver: Solver, direction: Floats) -> bool:
-    """Whether torques show it where 1 kg at the tip is moved by 1 m."""
+def _bears(solver: Solver, direction: Floats, inertia: float = 0.0, speed: float = 1.0) -> bool:
+    """Whether torques show it where 1 kg at the tip is moved by 1 m, and given an inertia [kg m^2]."""
     states = np.random.default_rng(0).standard_normal((3, 50, len(solver.joint_names)))
+    states[1:] *= speed
     torques = []
     try:
-        for center in (np.zeros(3), direction):
-            solver.set_payload(NAME, 1.0, center_of_mass=center)
+        for share in (0.0, 1.0):
+            moment = share * inertia * np.eye(3)
+            solver.set_payload(NAME, 1.0, center_of_mass=share * direction, inertia=moment)
             torques.append(solver.torques(*states))
     finally:
         solver.remove_payload(NAME)
@@ -372,8 +389,10 @@ def _require_motion(samples: Samples, where: str, load: str = "with the load") -
         )
 
 
-def _check(found: Fit, samples: Samples, evaluation: Evaluation, idle: Floats) -> None:
-    """Refuse an estimate that isn't that of a load."""
+def _check(
+    found: Fit, samples: Samples, evaluation: Evaluation, idle: Floats, solver: Solver
+) -> None:
+    """Refuse what isn't an estimate of a load."""
     where, estimate = evaluation.bag, found.estimate
     varies, left = samples.measured.std(axis=0), found.after.std(axis=0)
     loaded = varies > _LEAST_VARIATION * _rms(samples.measured).max()
@@ -389,19 +408,22 @@ def _check(found: Fit, samples: Samples, evaluation: Evaluation, idle: Floats) -
     if half >= mass:
         raise PayloadError(
             f"{where}: no load is found: {mass:.3g} kg with a 95 % interval of +- {half:.2g} kg, which "
-            "holds zero; the robot carries nothing, or too little for this motion: move shoulder and "
-            "elbow further and longer, and give --empty"
+            "holds zero; the robot carries nothing, or too little for this motion: move the joints that bear "
+            "most of it further and longer, and give --empty"
         )
-    axes = [
-        f"{axis} (+- {1e3 * width:.0f} mm)"
-        for axis, width in zip("xyz", _center_half_width(estimate, idle), strict=True)
-        if width > _WORST_CENTER
-    ]
-    if axes:
+    widths = _center_half_width(estimate, idle)
+    wide = np.flatnonzero(widths > _WORST_CENTER)
+    if len(wide):
+        axes = listed([f"{'xyz'[i]} (+- {1e3 * widths[i]:.0f} mm)" for i in wide])
+        why = (
+            "gravity hardly loads the wrist in these poses; turn the wrist so that each of its axes is horizontal "
+            "for some time"
+        )
+        if not any(_bears(solver, np.eye(3)[i], speed=0.0) for i in wide):
+            why = "gravity never shows it, accelerations do: turn the joints next to the tip faster and longer"
         raise PayloadError(
-            f"{where}: mass {mass:.3g} +- {half:.2g} kg, but its position is uncertain along {listed(axes)} "
-            "of the tip frame: gravity hardly loads the wrist in these poses; turn the wrist so that each "
-            "of its axes is horizontal for some time"
+            f"{where}: mass {mass:.3g} +- {half:.2g} kg, but its position is uncertain along {axes} of the tip "
+            f"frame: {why}"
         )
 
 
@@ -416,12 +438,13 @@ def _phantom(found: Fit) -> list[str]:
     ]
 
 
-def _notes(found: Fit, evaluation: Evaluation, idle: Floats) -> list[str]:
-    notes = [
-        f"no joint of this arm bears how far the load reaches along {_vector(direction)} of the tip frame: "
-        "any position there gives the same torques, and the center of mass is written with 0"
-        for direction in idle
-    ]
+def _notes(found: Fit, evaluation: Evaluation, idle: Floats, solver: Solver) -> list[str]:
+    notes = []
+    if len(idle):
+        along = "" if len(idle) == 3 else f" along {listed([_vector(v) for v in idle])}"
+        notes.append(
+            f"the torques don't depend on the load's position{along} in the tip frame, where it is written as 0"
+        )
     if evaluation.effort.meaning == "torque_without_gravity":
         notes.append(
             "efforts lack gravity: the load must not be set in the robot (or as before this recording), else "
@@ -435,7 +458,9 @@ def _notes(found: Fit, evaluation: Evaluation, idle: Floats) -> list[str]:
     if not found.estimate.inertia_is_known:
         notes.append(
             "the inertia isn't determined by the data, so the load is written as a point mass; faster motion of "
-            "the wrist, or a heavier load, would"
+            "the wrist, or a heavier load, would determine it"
+            if _bears(solver, np.zeros(3), inertia=1.0)
+            else "the torques don't depend on the load's inertia, as no joint turns it: it is written as a point mass"
         )
     if not evaluation.robot.friction:
         notes.append(
