@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.identification.knowledge import DOUBT
+from inverse_dynamics.identification.knowledge import DOUBT, student_t
 from inverse_dynamics.identification.refusals import mean_unit
 from inverse_dynamics.identification.result import Finding
 from inverse_dynamics.identification.summary import delay_told
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import ArmFitter
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.identification.blocks import Block
-    from inverse_dynamics.identification.cross_validation import Chosen
     from inverse_dynamics.robot.robots import Robot
 
 _LITTLE_MOTION = 0.1  # rad or m
@@ -76,15 +75,19 @@ def gravity_finding(
 
 
 def motion_findings(
-    fitter: ArmFitter, chosen: Chosen, blocks: Sequence[Block], independent: Floats
+    fitter: ArmFitter, delay: float, delays: Floats, blocks: Sequence[Block], independent: Floats
 ) -> list[Finding]:
-    """Findings about the motion, and the delay of the torques."""
+    """Findings about the motion, and the delay of the torques.
+
+    delays: s, without each held-out block in turn; a jackknife tells whether the delay is zero.
+    """
     found = []
-    if chosen.delay:
+    half = student_t(len(delays)) * float(np.sqrt((len(delays) - 1) * np.var(delays)))
+    if abs(delay) > half:
         found.append(
             Finding(
                 "delay",
-                f"recorded efforts are {delay_told(chosen.delay)} than the states: fits make up "
+                f"recorded efforts are {delay_told(delay)} (+- {1e3 * half:.2g} ms) than the states: fits make up "
                 "for it, held-out errors and bands don't, as solvers don't",
             )
         )

@@ -402,7 +402,9 @@ def _result(
         findings=(
             *gravity,
             *findings_of_errors(fitter, links, held, first.units),
-            *motion_findings(fitter, chosen, later, independent),
+            *motion_findings(
+                fitter, chosen.delay, np.array([b.delay for b in held_out]), later, independent
+            ),
         ),
         # but for the cause of the present model's errors, which the fit removes
         notes=tuple(note for e in evaluations for note in e.notes_without_causes),

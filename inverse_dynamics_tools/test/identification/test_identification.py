@@ -20,6 +20,7 @@ from inverse_dynamics.evaluation.series import series_columns
 from inverse_dynamics.identification import cross_validation
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of
+from inverse_dynamics.identification.findings import motion_findings
 from inverse_dynamics.identification.knowledge import independent_samples, intervals, knowledge
 from inverse_dynamics.identification.result import COLUMNS, LAWS, IdentificationError
 from inverse_dynamics.identification.summary import delay_told
@@ -275,6 +276,21 @@ def test_a_delay_of_several_steps_is_found(monkeypatch, late):
 
 def test_without_a_least_noise_there_is_no_delay(monkeypatch):
     assert delay_where(monkeypatch, lambda delays: 1.0 - delays) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("delay", "delays", "told"),
+    [
+        (-1e-4, [-2e-4, 0.0, -2e-4, 0.0, -1e-4], None),
+        (4e-3, [4.1e-3, 3.9e-3, 4e-3, 4.1e-3, 3.9e-3], "4.0 ms later (+- 0.5 ms)"),
+        (0.0, [0.0] * 5, None),
+    ],
+)
+def test_a_delay_is_stated_where_blocks_agree_that_it_isnt_zero(delay, delays, told):
+    still = SimpleNamespace(q=np.zeros((2, 0)))
+    fitter = SimpleNamespace(joint_names=())
+    found = motion_findings(fitter, delay, np.array(delays), [still], np.empty(0))
+    assert [told in finding.text for finding in found] == [True] * (told is not None)
 
 
 def test_a_negative_delay_is_told_as_earlier():
