@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.identification.identify import identify
 from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.robot.robots import robot_of_description
+from inverse_dynamics.verbs.contact import none_found
 
 PERIOD = 1e-3
 PUSH = (25.0, 26.0, 5.0)  # from, to [s], N m
@@ -274,6 +276,12 @@ def test_thresholds_that_say_little_are_noted(tmp_path, motion, recording, robot
     (note,) = notes_of(0.0, 20.0)
     assert "high thresholds: swing (" in note
     assert "% of its effort limit): weaker contacts aren't found" in note
+
+    (tmp_path / "arm.urdf").write_text(pendulum(limit=limit.format(0.01)))
+    with pytest.raises(EvaluationError, match="no contact could be found, as thresholds exceed"):
+        notes_of(0.0, 20.0)
+    blind = SimpleNamespace(blind=("lift", "swing"))
+    assert none_found(blind).startswith("none, but lift, swing can't tell")
 
     (tmp_path / "arm.urdf").write_text(pendulum(limit=limit.format(0)))  # none is stated
     time, q = (values[:10_000] for values in motion[:2])

@@ -112,6 +112,9 @@ class Contacts:
     thresholds: ContactThresholds
     contacts: tuple[Contact, ...]
     interruptions: tuple[tuple[float, float], ...] = ()  # from, to [s]: no estimate in between
+    blind: tuple[
+        str, ...
+    ] = ()  # joints whose thresholds exceed their effort limits: no contact shows
     quiet_part: tuple[float, float] | None = None  # from, to [s], if the thresholds are from there
     notes: tuple[str, ...] = ()
 
@@ -172,6 +175,7 @@ def find_contacts(
     thresholds, raised_notes = _raised(quiet_torques, plain, solver, false_alarms)
     wrenches, unseen, wrench_notes = _wrenches(solver, estimates, thresholds)
     limits = effort_limits(evaluation.robot.urdf, arm.description, arm.joint_names)
+    blind = _blind(evaluation, thresholds, limits, quiet_torques.where)
     interruptions = _interruptions(estimates)
     found = Contacts(
         evaluation=evaluation,
@@ -190,6 +194,7 @@ def find_contacts(
         thresholds=thresholds,
         contacts=(),
         interruptions=interruptions,
+        blind=blind,
         quiet_part=quiet if quiet_recording is None else None,
         notes=(
             *evaluation.notes,
@@ -421,6 +426,28 @@ def _interruption_notes(
     )
 
 
+def _blind(
+    evaluation: Evaluation, thresholds: ContactThresholds, limits: Floats, quiet: str
+) -> tuple[str, ...]:
+    """Joints that show no contact that they could bear; refused where no other is left."""
+    blind = np.array(thresholds.torques) > limits
+    if not blind.all():
+        return tuple(np.array(evaluation.joint_names)[blind].tolist())
+    shares = ", ".join(f"{100 * x:.3g} %" for x in thresholds.torques / limits)
+    raise EvaluationError(
+        f"{quiet}: no contact could be found, as thresholds exceed the effort limits of all joints: {shares} of them; "
+        f"{_remedy(evaluation)}"
+    )
+
+
+def _remedy(evaluation: Evaluation) -> str:
+    """Against high thresholds. What the model lacks throughout no longer part mends."""
+    if evaluation.diagnosis:
+        causes = (f"{cause.reason}; {cause.remedy}" for cause in evaluation.diagnosis)
+        return f"first remove the likely cause of the error: {', or '.join(causes)}"
+    return "take a longer part without contact, or more --false-alarms"
+
+
 def _threshold_notes(
     evaluation: Evaluation, thresholds: ContactThresholds, limits: Floats
 ) -> list[str]:
@@ -440,8 +467,7 @@ def _threshold_notes(
     notes = []
     if large:
         notes.append(
-            f"high thresholds: {listed(large)}: weaker contacts aren't found; take a longer part "
-            "without contact, or more --false-alarms"
+            f"high thresholds: {listed(large)}: weaker contacts aren't found; {_remedy(evaluation)}"
         )
     if uncertain:
         notes.append(

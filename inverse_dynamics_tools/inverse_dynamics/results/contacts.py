@@ -75,5 +75,6 @@ def summary(contacts: Contacts) -> dict[str, Any]:
         ],
         "contacts": contacts.contacts,
         "interruptions": contacts.interruptions,
+        "blind": contacts.blind,
         "notes": contacts.notes,
     }

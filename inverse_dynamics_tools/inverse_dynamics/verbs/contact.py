@@ -6,11 +6,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.base.wording import listed
 from inverse_dynamics.verbs.options import RECORDING, SOLVER, Options, chosen_robot, given_overrides
 from inverse_dynamics.verbs.values import file_name, numbers, positive_number, span
 
 if TYPE_CHECKING:
     import argparse
+
+    from inverse_dynamics.evaluation.contacts import Contacts
 
 SUMMARY = "find what touched the robot, and with which force"
 DESCRIPTION = "Find what touched the robot in a recording, and with which force."
@@ -83,6 +86,13 @@ def declare(options: Options) -> None:
     options.overrides(*SOLVER, *RECORDING)
 
 
+def none_found(contacts: Contacts) -> str:
+    """In words, with the joints that can't tell."""
+    if not contacts.blind:
+        return "none"
+    return f"none, but {listed([*contacts.blind])} can't tell: thresholds exceed effort limits"
+
+
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.base.files import check_output_directory
@@ -122,7 +132,9 @@ def run(arguments: argparse.Namespace) -> None:
             ("quiet", contacts.quiet),
             ("note", contacts.notes),
             on_screen(threshold_table(contacts)),
-            on_screen(contact_table(contacts)) if contacts.contacts else ("contacts", "none"),
+            on_screen(contact_table(contacts))
+            if contacts.contacts
+            else ("contacts", none_found(contacts)),
             ("figure", [out / f"contacts.{suffix}" for suffix in arguments.figures]),
             ("contacts", out / "contacts.json"),
             ("page", out / "report.html"),
