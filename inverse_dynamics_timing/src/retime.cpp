@@ -102,11 +102,9 @@ Retimed withoutJerk(const InverseDynamicsSolver& solver, const Trajectory& motio
   return {{}, {Refusal::Reason::kNoWayOn, s, -1, 0.0}};
 }
 
-}  // namespace
-
-Retimed retime(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
-               const RetimeOptions& options) {
-  check(solver, path, limits, options);
+/// The fastest motion, whatever its jerk.
+Retimed withJerk(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
+                 const RetimeOptions& options) {
   const std::vector<Index> knots = borders(path);
   std::vector<double> s, speed;
   for (std::size_t section = 0; section + 1 < knots.size(); ++section) {
@@ -133,10 +131,54 @@ Retimed retime(const InverseDynamicsSolver& solver, const Path& path, const Moti
     for (const double squared : z) speed.push_back(std::sqrt(squared));
   }
   const auto count = static_cast<Index>(s.size());
-  Trajectory fastest(path, Eigen::Map<const VectorXd>(s.data(), count),
-                     Eigen::Map<const VectorXd>(speed.data(), count));
-  if (limits.jerk.size() == 0) return {std::move(fastest), {}};
-  return withoutJerk(solver, fastest, limits, options.margin);
+  return {Trajectory(path, Eigen::Map<const VectorXd>(s.data(), count),
+                     Eigen::Map<const VectorXd>(speed.data(), count)),
+          {}};
+}
+
+/// The fastest of the motions with jerk in limits whose accelerations, before they are averaged, the
+/// joints reach within one time: the longer it is, the longer is the span of averaging.
+Retimed fastestWithoutJerk(const InverseDynamicsSolver& solver, const Trajectory& fastest,
+                           const MotionLimits& limits, const RetimeOptions& options) {
+  constexpr double kWorse = 2.0, kSame = 1.001, kLeastStep = 1.1;
+  constexpr int kHalvings = 30;
+  Retimed best{{}, {Refusal::Reason::kNoWayOn, 0.0, -1, 0.0}};
+  // About 2.5 times the best time of a motion that is all acceleration, or one that limits nothing.
+  const double duration = fastest.duration(),
+               limitless = 2 * accelerationTime(fastest, limits.jerk);
+  double time = std::min(std::cbrt(duration * duration * limitless), limitless), best_time = time;
+  // How long the motion with another time takes, as a share of the best one.
+  const auto attempt = [&](double reached) {
+    MotionLimits softer = limits;
+    softer.acceleration = reached * limits.jerk;
+    if (limits.acceleration.size() > 0) {
+      softer.acceleration = softer.acceleration.cwiseMin(limits.acceleration).eval();
+    }
+    Retimed motion = withJerk(solver, fastest.path(), softer, options);
+    if (motion) motion = withoutJerk(solver, motion.trajectory, limits, options.margin);
+    const double share =
+        motion && best ? motion.trajectory.duration() / best.trajectory.duration() : 1.0;
+    if (!best || share < kSame)
+      best_time = reached;  // also where times that are longer limit nothing
+    if (!best || share < 1.0) best = std::move(motion);
+    return share;
+  };
+  for (int halving = 0; halving < kHalvings && attempt(time) < kWorse; ++halving) time /= 2;
+  for (double step = std::sqrt(2.0); step > kLeastStep; step = std::sqrt(step)) {
+    const double middle = best_time;
+    attempt(middle * step), attempt(middle / step);
+  }
+  return best;
+}
+
+}  // namespace
+
+Retimed retime(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
+               const RetimeOptions& options) {
+  check(solver, path, limits, options);
+  Retimed fastest = withJerk(solver, path, limits, options);
+  if (!fastest || limits.jerk.size() == 0) return fastest;
+  return fastestWithoutJerk(solver, fastest.trajectory, limits, options);
 }
 
 chain_dynamics::OwnedVector speedLimit(const InverseDynamicsSolver& solver,

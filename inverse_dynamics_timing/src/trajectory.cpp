@@ -47,7 +47,8 @@ Trajectory averaged(const Trajectory& motion, double span) {
   std::vector<double> s, speed;
   for (const Section& section : sectionsOf(motion)) {
     const double duration = motion.time()[section.last] - motion.time()[section.first] + span;
-    const auto steps = std::max<Index>(static_cast<Index>(std::ceil(duration / kStep)), 4);
+    // Steps of at least kStep, so that acceleration changes once within it.
+    const auto steps = std::max<Index>(static_cast<Index>(duration / kStep), 4);
     const double step = duration / static_cast<double>(steps);
     const double from = motion.s()[section.first], to = motion.s()[section.last];
     const std::size_t begin = s.size();
@@ -70,16 +71,25 @@ Trajectory averaged(const Trajectory& motion, double span) {
           Eigen::Map<const VectorXd>(speed.data(), count)};
 }
 
-/// The greatest jerk of a joint over its limit.
-double jerkOf(const Trajectory& motion, const Eigen::Ref<const VectorXd>& limit) {
+/// The greatest acceleration and jerk of a joint, each over the joint's limit of jerk.
+struct Peaks {
+  double acceleration = 0.0;  // s
+  double jerk = 0.0;
+};
+
+Peaks peaksOf(const Trajectory& motion, const Eigen::Ref<const VectorXd>& limit) {
   const Index n = limit.size();
   VectorXd q(n), qd(n), before(VectorXd::Zero(n)), qdd(n);
-  double most = 0.0;
+  Peaks most;
+  const auto raise = [&limit](double& peak, const VectorXd& values) {
+    peak = std::max(peak, (values.cwiseAbs().array() / limit.array()).maxCoeff());
+  };
   const auto steps = static_cast<Index>(std::ceil(motion.duration() / kStep));
   for (Index i = 0; i <= steps; ++i) {
     motion.evaluate((static_cast<double>(i) + 0.5) * kStep, q, qd, qdd);
     if (i == steps) qdd.setZero();  // it stands
-    most = std::max(most, ((qdd - before).cwiseAbs().array() / limit.array()).maxCoeff() / kStep);
+    raise(most.acceleration, qdd);
+    raise(most.jerk, (qdd - before) / kStep);
     before = qdd;
   }
   return most;
@@ -113,24 +123,24 @@ void Trajectory::evaluate(double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd>
   qd *= speed;
 }
 
+double accelerationTime(const Trajectory& motion, const Eigen::Ref<const VectorXd>& jerk) {
+  return peaksOf(motion, jerk).acceleration;
+}
+
 Trajectory smoothJerk(const Trajectory& motion, const Eigen::Ref<const VectorXd>& jerk) {
-  double span = 2 * kStep;
-  Trajectory smooth = averaged(motion, span);
-  double too_short = 0.0;
-  while (jerkOf(smooth, jerk) > 1.0) {
-    too_short = span;
-    span *= 2;
-    smooth = averaged(motion, span);
-  }
-  for (int halving = 0; too_short > 0.0 && halving < 8; ++halving) {
+  // The longest span turns the greatest acceleration into its opposite.
+  double too_short = 0.0, span = std::max(2 * accelerationTime(motion, jerk), 2 * kStep);
+  for (int halving = 0; halving < 8; ++halving) {
     const double middle = (too_short + span) / 2;
-    Trajectory between = averaged(motion, middle);
-    if (jerkOf(between, jerk) > 1.0) {
-      too_short = middle;
-    } else {
-      span = middle;
-      smooth = std::move(between);
-    }
+    (peaksOf(averaged(motion, middle), jerk).jerk > 1.0 ? too_short : span) = middle;
+  }
+  // The other jerk is that of the path's bends, in proportion to the cube of speed.
+  Trajectory smooth = averaged(motion, span);
+  double factor = 1.0;
+  for (double over = 0.0; (over = peaksOf(smooth, jerk).jerk) > 1.0;) {
+    constexpr double kRounding = 1e-4;
+    factor *= std::cbrt(over) + kRounding;
+    smooth = averaged(slowed(motion, factor), factor * span);
   }
   return smooth;
 }

@@ -349,6 +349,24 @@ TEST(Retime, JerkStaysWithinItsLimit) {
   }
 }
 
+// The shortest time of a way d is (32 d / j)^(1/3).
+TEST(Retime, JerkLimitsTakeTheCubeRootOfTheirInverse) {
+  const auto solver = slider();
+  const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
+  MotionLimits limits;
+  limits.torque = VectorXd::Constant(1, 10.0);
+  for (const double jerk : {0.1, 1.0, 10.0}) {
+    limits.jerk = VectorXd::Constant(1, jerk);
+    limits.acceleration = {};
+    const double duration = retime(*solver, path, limits).trajectory.duration();
+    EXPECT_NEAR(duration / std::cbrt(32 * 2.0 / jerk), 1.1, 0.11);
+    for (const double acceleration : {0.1, 0.3, 1.0, 3.0}) {
+      limits.acceleration = VectorXd::Constant(1, acceleration);
+      EXPECT_GT(retime(*solver, path, limits).trajectory.duration(), 0.995 * duration);
+    }
+  }
+}
+
 TEST(Retime, SpeedLimitIsAboveTheSpeed) {
   const auto solver = identified("franka_inria_identified.yaml");
   MotionLimits limits;

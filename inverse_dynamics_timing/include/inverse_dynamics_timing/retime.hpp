@@ -42,8 +42,8 @@ struct MotionLimits {
   chain_dynamics::OwnedVector torque;        ///< N m (sliders: N); required
   chain_dynamics::OwnedVector velocity;      ///< rad/s
   chain_dynamics::OwnedVector acceleration;  ///< rad/s^2
-  /// rad/s^3; start and end must be at rest. A pass after the optimisation averages the path's speed
-  /// over a span of time, which costs more time than an optimum would [smoothJerk()].
+  /// rad/s^3; start and end must be at rest. The speed of a motion with limited acceleration is averaged
+  /// over a span of time [smoothJerk()]; the acceleration is the best for it, not an optimum of all motions.
   chain_dynamics::OwnedVector jerk;
 
   /// @name Motors whose torque falls with speed
