@@ -82,7 +82,7 @@ Trajectory retimed(const SolverObject& solver, const Path& path, const MotionLim
 void bindTiming(py::module_& module) {
   bindPath(module);
   using L = MotionLimits;
-  bindOptions<1>(
+  bindOptions<0>(
       module, "MotionLimits", "Limits of the joints' sizes, both directions.",
       "(n,) each; empty: unlimited.", Field{"torque", &L::torque, "(n,) N m."},
       Field{"velocity", &L::velocity, "(n,) rad/s."},

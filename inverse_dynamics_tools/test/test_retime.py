@@ -7,14 +7,15 @@ import numpy as np
 import pytest
 from conftest import JOINTS
 from scipy.interpolate import CubicSpline
+from test_joint_trajectories import trajectory, write_trajectories
 from test_report import browser, child, complaints, time_of, wait_until
 
-from inverse_dynamics import Solver, cli, load_robot, retime, trajectory_torques
+from inverse_dynamics import cli, load_robot, retime, trajectory_torques
 from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retime_path
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
-from inverse_dynamics.evaluation.retiming import description_limits, sample_times, torque_limit
+from inverse_dynamics.evaluation.retiming import described_limits, sample_times, torque_limit
 from inverse_dynamics.report.retimed import render_retimed_page, spans
 from inverse_dynamics.robot.robots import with_changes
 
@@ -262,20 +263,86 @@ def test_a_joint_without_a_velocity_limit_leaves_the_others_theirs(tmp_path):
     element.find("joint[@name='wrist_3_joint']/limit").set("velocity", "0")
     urdf.write_text(ElementTree.tostring(element, encoding="unicode"))
     robot = with_changes(load_robot("ur10_simulated"), urdf=urdf)
-    limits = description_limits(Arm(robot), robot)
+    limits = described_limits(Arm(robot), robot)
     assert limits.velocity[:5].tolist() == [stated[joint] for joint in JOINTS[:5]]
     assert limits.velocity[5] > 1e3
+    assert "velocity of wrist_3_joint isn't limited" in retime(WAYPOINTS, robot).notes[-1]
 
 
-def test_continuous_joints_take_the_short_way():
-    urdf = """<robot name="turner"><link name="base"/><link name="arm"><inertial><mass value="1"/>
-      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
-      <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
-      <limit effort="10" velocity="3"/></joint></robot>"""
-    from inverse_dynamics.evaluation.retiming import unwrapped
+TURNER = """<robot name="turner"><link name="base"/><link name="arm"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+  <limit effort="10" velocity="3"/></joint></robot>"""
 
-    ways = unwrapped(np.array([[3.0], [-3.0]]), Solver(urdf=urdf))
-    assert ways[1, 0] == pytest.approx(2 * np.pi - 3.0)
+
+@pytest.fixture
+def turner(tmp_path):
+    urdf = tmp_path / "turner.urdf"
+    urdf.write_text(TURNER)
+    return urdf
+
+
+SLIDE = """\
+schema: 1
+name: slide
+source: none
+validity: none
+units: SI
+geometry: placements
+gravity: [0, 0, -9.81]
+parameters: about_center_of_mass
+joints:
+  - name: x
+    type: prismatic
+    placement: {xyz: [0, 0, 1], rpy: [0, 0, 0], axis: [1, 0, 0]}
+    limits: {lower: -2, upper: 2, velocity: 3, effort: 100}
+    friction: {law: none}
+    link: [3, 0, 0, 0, 0.1, 0, 0, 0.1, 0, 0.1]
+"""
+
+
+def write_column(directory, positions):
+    path = directory / "turns.csv"
+    np.savetxt(path, positions, header="position.turn", comments="")
+    return path
+
+
+def test_continuous_joints_turn_as_far_as_waypoints_say(turner, tmp_path):
+    for end in (3.3, 6.5, -9.0):
+        assert retime([[0.0], [end]], turner).q[-1, 0] == pytest.approx(end)
+        assert retime(write_column(tmp_path, [0.0, end]), turner).q[-1, 0] == pytest.approx(end)
+
+
+def test_a_recorded_path_goes_on_over_the_seam_of_a_turn(turner, tmp_path):
+    q = np.linspace(3.0, 3.6, 7)
+    recorded = retime(write_column(tmp_path, (q + np.pi) % (2 * np.pi) - np.pi), turner)
+    assert recorded.q[-1, 0] == pytest.approx(3.6)
+    assert recorded.notes == ("turn goes on over the seam of its turn in 1 place",)
+
+
+@pytest.mark.parametrize("given", [{}, {"velocity": [1.0]}, {"jerk": [9.0]}, {"torque": [5.0]}])
+def test_limits_that_are_not_given_are_those_of_the_description(turner, given):
+    limits = retime([[0.0], [9.0]], turner, MotionLimits(**given)).limits
+    assert limits.torque == given.get("torque", [10.0])
+    assert limits.velocity == given.get("velocity", [3.0])
+
+
+def test_limits_and_units_of_a_model_without_a_description_are_its_own(tmp_path):
+    model = tmp_path / "slide.yaml"
+    model.write_text(SLIDE)
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(
+        "schema: 1\nname: slide\ndescription: a slide\n"
+        "plugin: rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody\nmodel: slide.yaml\n"
+    )
+    moved = retime([[0.0], [2.0]], robot)
+    assert moved.units == ("N",)
+    assert (moved.limits.torque, moved.limits.velocity) == ([100.0], [3.0])
+    assert np.abs(moved.qd).max() == pytest.approx(3.0)
+    with pytest.raises(
+        UserError, match=r"x: expected positions from -2 to 2, the limits in .*slide.yaml"
+    ):
+        retime([[0.0], [5.0]], robot)
 
 
 def test_command_writes_a_trajectory_that_ids_torques_confirms(tmp_path, capsys):
@@ -368,10 +435,20 @@ def test_acceleration_is_compared_under_the_same_other_limits():
     assert retime(WAYPOINTS, "ur10_simulated", jerky).seconds_saved > -0.01
 
 
+def test_the_compared_acceleration_is_one_that_the_motion_has():
+    """Where jerk limits it, torques would allow any acceleration."""
+    limits = MotionLimits(torque=LIMITS["ur10_simulated"], jerk=np.full(6, 5.0))
+    slow = retime(WAYPOINTS, "ur10_simulated", limits)
+    assert slow.acceleration < 5.0
+    assert slow.seconds_saved >= 0.0
+
+
 @pytest.mark.parametrize(
     ("old", "new", "text"),
     [
         ("wrist_3_joint", "wrist_9_joint", r"way.yaml: joints: expected .*, got .*wrist_9_joint"),
+        ("schema: 1", "units: deg", "units: unknown key"),
+        ("kind: waypoints", "kind: fourier", "kind: expected one of waypoints"),
         ("[0.5, -1.5", "[30, -90", "shoulder_pan_joint: expected positions from -6.28.*degrees"),
     ],
 )
@@ -380,6 +457,21 @@ def test_files_of_other_robots_and_units_are_refused(tmp_path, old, new, text):
     way.write_text(way.read_text().replace(old, new))
     with pytest.raises(UserError, match=text):
         retime(way, "ur10_simulated")
+
+
+def test_several_trajectories_are_not_joined_to_one_path(turner, tmp_path):
+    points = [(k, [float(k)], [], [], []) for k in range(2)]
+    messages = [trajectory(["turn"], points)] * 2
+    write_trajectories(tmp_path / "two", messages)
+    with pytest.raises(
+        UserError, match="expected one trajectory, .* got 2 messages with 2, 2 points"
+    ):
+        retime(tmp_path / "two", turner)
+
+
+def test_a_waypoint_that_lacks_a_number_is_refused(turner, tmp_path):
+    with pytest.raises(UserError, match="got 1 of 3 rows without"):
+        retime(write_column(tmp_path, [0.0, np.nan, 1.0]), turner)
 
 
 def test_a_file_without_waypoints_is_named(tmp_path):

@@ -17,10 +17,10 @@ from identified_arms import arm, identification
 from simulation_arms import robots_package
 
 from inverse_dynamics import load_robot, retime
-from inverse_dynamics._core import RetimeOptions
+from inverse_dynamics._core import MotionLimits, RetimeOptions
 from inverse_dynamics.control import ComputedTorque, Gains, LawOptions, Status, damping_for
 from inverse_dynamics.evaluation.evaluation import Arm
-from inverse_dynamics.evaluation.retiming import description_limits
+from inverse_dynamics.evaluation.retiming import described_limits
 from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.robot.robots import with_changes
 from inverse_dynamics.simulation.model import Payload
@@ -82,8 +82,8 @@ def execute(robot: Robot, waypoints: Floats, planned: float, carried: float) -> 
     load = {"payload": {"mass": planned, "center_of_mass": list(CENTER)}}
     known = with_changes(robot, parameters=load) if planned else robot
     own = Arm(known)
-    torque = description_limits(own, known).torque
-    fastest = retime(waypoints, known, description_limits(own, known, torque=SHARE * torque))
+    torque = described_limits(own, known).torque
+    fastest = retime(waypoints, known, MotionLimits(torque=SHARE * torque))
     plant = simulated_robot(
         robot,
         description_of(robot),

@@ -31,6 +31,7 @@ from inverse_dynamics.evaluation.causes.samples import pieces_of
 from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.views import Views
+from inverse_dynamics.robot.chain_geometry import chain_geometry, model_limits
 from inverse_dynamics.robot.descriptions import parse_description, read_description
 from inverse_dynamics.robot.dh_tables import guess_notes
 from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot, with_changes
@@ -335,6 +336,17 @@ class Arm:
             "N" if kind == "prismatic" else "N m" for kind in self.solver.joint_types
         )
         self.robot = robot
+
+    def limit(self, name: str, absent: float) -> Floats:
+        """(n,) of `lower`, `upper`, `velocity` or `effort`: the description's, or without one the model's."""
+        robot = self.robot
+        limits: Sequence[Mapping[str, float]] = [{}] * len(self.joint_names)
+        if self.description:
+            chain = chain_geometry(self.description, robot.root, self.joint_names)
+            limits = [joint.limits for joint in chain]
+        elif robot.model is not None:
+            limits = model_limits(robot.model)
+        return np.array([of_joint.get(name, absent) for of_joint in limits])
 
     @cached_property
     def subtracted(self) -> Solver:

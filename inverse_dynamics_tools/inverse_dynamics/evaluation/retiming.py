@@ -26,6 +26,7 @@ from inverse_dynamics._core import (
 )
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.located_yaml import read_mapping
+from inverse_dynamics.base.wording import counted
 from inverse_dynamics.data.csv_table import is_csv
 from inverse_dynamics.data.joint_trajectories import read_joint_trajectories
 from inverse_dynamics.data.log_format import LogFormat
@@ -35,7 +36,6 @@ from inverse_dynamics.data.vocabulary import POSITION
 from inverse_dynamics.errors import BagError, UserError
 from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
-from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.robots import Robot, load_robot
 
 if TYPE_CHECKING:
@@ -49,10 +49,16 @@ if TYPE_CHECKING:
 _UNLIMITED = 1e6  # N m, rad/s: beyond every joint
 _OF_MOTORS = ("knee_velocity", "no_load_velocity")
 PER_JOINT = ("torque", "velocity", "acceleration", "jerk", *_OF_MOTORS)
+_ABOUT_ONE, _AIM = (
+    0.998,
+    0.999,
+)  # share of torque limits at which the compared acceleration is found
+_MOST_STEPS = 12  # of its search
 _WEIGHING_RATE = 250.0  # Hz, of samples for energies
 _SLOWEST = 0.05  # share of the fastest motion's velocities
 _SECTIONS = 9  # of the search: the share is known to 3 %, the sum to far less
 _STILL = 1e-6  # rad/s
+_CLOSE = 0.5  # rad, between the samples of a recorded path
 _LEAST = 1e-9  # N m, of a limit
 _PLACES = 1001  # of a path, at which positions are checked
 _ROUNDING = 1e-6  # rad
@@ -77,7 +83,9 @@ class Retimed:
     speed_limit: Floats  # (K,) of the grid: ds/dt that limits allow for an instant
     energy: MotionEnergy
     by_acceleration: TimedPath | None  # the same path, one acceleration limit for all joints
-    acceleration: float  # rad/s^2, that limit: the greatest that keeps torques within theirs
+    acceleration: (
+        float  # rad/s^2, that limit: the greatest that keeps torques within theirs, and is used
+    )
     notes: tuple[str, ...] = ()
 
     @property
@@ -137,11 +145,12 @@ def retime(
     ----------
     path
         Waypoints (m, n) [rad]; a file of them: trajectory_msgs/JointTrajectory of a recording, a table, or a
-        YAML file with `joints` and `positions`, times ignored; or a JointPath.
+        YAML file with `joints` and `positions`, times ignored; or a JointPath. A continuous joint turns as
+        far as the numbers say; in a table recorded within one turn, steps over the seam are short.
     robot
         As evaluate() takes it.
     limits
-        By default those of the robot description.
+        Torques and velocities that aren't among them are those of the robot description.
     deviation
         Straight lines whose corners the path passes by at most this distance [rad]; by default a cubic
         spline through all waypoints.
@@ -173,22 +182,28 @@ def retime(
         raise UserError(f"weight: expected a finite number, s/J, at least zero, got {weight:g}")
     arm = Arm(robot)
     options = options or RetimeOptions()
-    limits = limits or description_limits(arm, robot)
+    limits = described_limits(arm, robot, limits)
+    notes = [*arm.solver.warnings, *_notes_of_velocities(arm, limits)]
     if not isinstance(path, JointPath):
-        waypoints = unwrapped(waypoints_of(path, robot, arm, topic), arm.solver)
+        waypoints = waypoints_of(path, robot, arm, topic)
+        if isinstance(path, Path | str) and is_csv(Path(path)):
+            waypoints, seams = _unwrapped(waypoints, arm)
+            notes += seams
         path = (
             JointPath.spline(waypoints, list(stops))
             if deviation is None
             else JointPath.lines(waypoints, deviation, list(stops))
         )
     _check_positions(path, arm, robot)
-    timed = retime_path(arm.solver, path, limits, options)
+    fastest = retime_path(arm.solver, path, limits, options)
+    acceleration, by_acceleration = _by_acceleration(arm.solver, fastest, limits, options)
+    # with limits of jerk neither of them is the fastest of all
+    timed = min(fastest, by_acceleration or fastest, key=lambda one: one.duration)
     if weight > 0.0:
         timed = _weighted(arm.solver, timed, limits, options, weight)
     time = sample_times(timed.duration, rate)
     q, qd, qdd = timed.states(time)
     efforts = arm.solver.torques(q, qd, qdd)
-    acceleration, by_acceleration = _by_acceleration(arm.solver, path, limits, options)
     return Retimed(
         robot=robot,
         joint_names=arm.recorded_names,
@@ -205,7 +220,7 @@ def retime(
         energy=MotionEnergy.of(arm.solver, time, q, qd, efforts),
         by_acceleration=by_acceleration,
         acceleration=acceleration,
-        notes=tuple(arm.solver.warnings),
+        notes=tuple(notes),
     )
 
 
@@ -223,49 +238,52 @@ def sample_times(duration: float, rate: float) -> Floats:
     return np.append(np.arange(0.0, duration, 1.0 / rate), duration)
 
 
-def description_limits(arm: Arm, robot: Robot, **given: Sequence[float]) -> MotionLimits:
-    """Limits of torque and velocity of the robot description; those given replace them.
+def described_limits(arm: Arm, robot: Robot, given: MotionLimits | None = None) -> MotionLimits:
+    """Limits with those of torque and velocity that aren't given from the robot description.
 
-    Raises UserError where a joint has no torque limit.
+    One number stands for all joints. Raises UserError where a joint has no torque limit.
     """
+    given = given or MotionLimits()
     joints = arm.solver.joint_names
-    torque = _described(arm, robot, "effort", np.inf)
-    found = {"velocity": _described(arm, robot, "velocity", _UNLIMITED)}
-    if np.isfinite(torque).all():
-        found["torque"] = torque
-    for name, values in given.items():
-        if len(values) not in (1, len(joints)):
+    found = {}
+    for name in PER_JOINT:
+        values = getattr(given, name)
+        if len(values) not in (0, 1, len(joints)):
             raise UserError(
                 f"{name} limits: expected 1 number or {len(joints)}, one per joint ({', '.join(joints)}), "
                 f"got {len(values)}"
             )
-        found[name] = np.resize(values, len(joints))
-    if "torque" not in found:
+        found[name] = np.resize(values, len(joints)) if len(values) else values
+    for name, limit in (("torque", "effort"), ("velocity", "velocity")):
+        if not len(found[name]):
+            found[name] = np.minimum(arm.limit(limit, np.inf), _UNLIMITED)
+    lacking = [j for j, torque in zip(joints, found["torque"], strict=True) if torque == _UNLIMITED]
+    if lacking:
         raise UserError(
-            f"torque limits: expected one for each joint, got none for some in "
-            f"{robot.urdf or 'the robot, which has no description'}; give them with --torque"
+            f"torque limits: expected one for each joint, got none for {', '.join(lacking)} in "
+            f"{robot.urdf or robot.model or 'the robot, which has no description'}; give them with --torque"
         )
-    return MotionLimits(**found)
+    return MotionLimits(**found, tip_speed=given.tip_speed)
 
 
-def _described(arm: Arm, robot: Robot, limit: str, absent: float) -> Floats:
-    """(n,) of one of `lower`, `upper`, `velocity` and `effort`, as the description states it."""
-    if not arm.description:
-        return np.full(len(arm.joint_names), absent)
-    chain = chain_geometry(arm.description, robot.root, arm.joint_names)
-    return np.array([joint.limits.get(limit, absent) for joint in chain])
+def _notes_of_velocities(arm: Arm, limits: MotionLimits) -> list[str]:
+    free = [j for j, v in zip(arm.joint_names, limits.velocity, strict=True) if v >= _UNLIMITED]
+    return [
+        f"the velocity of {', '.join(free)} isn't limited: the robot's description states no limit, or 0; "
+        "give --velocity"
+    ] * bool(free)
 
 
 def _check_positions(path: JointPath, arm: Arm, robot: Robot) -> None:
     """Raise UserError where the path leaves the joints' ranges."""
     q, _, _ = path.states(np.linspace(path.knots[0], path.knots[-1], _PLACES))
-    lower, upper = _described(arm, robot, "lower", -np.inf), _described(arm, robot, "upper", np.inf)
+    lower, upper = arm.limit("lower", -np.inf), arm.limit("upper", np.inf)
     for j, joint in enumerate(arm.joint_names):
         least, most = q[:, j].min(), q[:, j].max()
         if least < lower[j] - _ROUNDING or most > upper[j] + _ROUNDING:
             raise UserError(
                 f"path: joint {joint}: expected positions from {lower[j]:g} to {upper[j]:g}, the limits in "
-                f"{robot.urdf}, got {least:.4g} to {most:.4g}; change the path, and if waypoints are in "
+                f"{robot.urdf or robot.model}, got {least:.4g} to {most:.4g}; change the path, and if waypoints are in "
                 "degrees, convert them (of a table: --scale q=deg)"
             )
 
@@ -292,10 +310,21 @@ def _waypoints_of_file(path: Path, robot: Robot, arm: Arm, topic: str) -> Floats
         return _waypoints_of_yaml(path, arm.joint_names)
     if is_csv(path):
         form = replace(LogFormat.of(robot), rate=1.0)  # without a column of time: it is ignored
-        return read_motion(
-            open_table(path, topic=topic), arm.recorded_names, form, (POSITION,)
-        ).numbers[POSITION]
-    trajectories = read_joint_trajectories(path, topic)
+        table = open_table(path, topic=topic)
+        motion = read_motion(table, arm.recorded_names, form, (POSITION,))
+        if table.incomplete:
+            raise BagError(
+                f"{path}: expected a number for each joint in each row, got {table.incomplete} of "
+                f"{table.incomplete + len(motion.time)} rows without; complete or remove them"
+            )
+        return motion.numbers[POSITION]
+    trajectories = [each for each in read_joint_trajectories(path, topic) if len(each)]
+    if len(trajectories) > 1 and max(map(len, trajectories)) > 1:
+        raise BagError(
+            f"{trajectories[0].where.rpartition(',')[0]}: expected one trajectory, or messages of one point "
+            f"each, got {len(trajectories)} messages with {', '.join(f'{len(t)}' for t in trajectories[:9])} "
+            "points: it isn't known which of them are the path; record one alone"
+        )
     return np.concatenate([t.numbers("positions", arm.recorded_names) for t in trajectories])
 
 
@@ -307,16 +336,34 @@ def _waypoints_of_yaml(path: Path, joints: Sequence[str]) -> Floats:
             f"{path}: joints: expected {', '.join(joints)}, got {', '.join(names)}; name the joints of the chain"
         )
     positions = top.required("positions")
+    if (kind := top.optional("kind")) is not None:
+        kind.text(("waypoints",))
+    for ignored in ("schema", "times", "source", "rests"):
+        top.optional(ignored)
+    top.reject_others()
     rows = [[number.number() for number in row.entries()] for row in positions.entries()]
     if any(len(row) != len(names) for row in rows):
         positions.fail(f"rows of {len(names)} numbers, one per joint")
     return np.array(rows).reshape(-1, len(names))[:, [names.index(joint) for joint in joints]]
 
 
-def unwrapped(waypoints: Floats, solver: Solver) -> Floats:
-    """Waypoints of continuous joints, each by the short way from the one before."""
-    turning = [kind == "continuous" for kind in solver.joint_types]
-    return np.where(turning, np.unwrap(waypoints, axis=0), waypoints)
+def _unwrapped(waypoints: Floats, arm: Arm) -> tuple[Floats, list[str]]:
+    """Recorded positions of continuous joints beyond the seam of a driver that reports them within one turn.
+
+    Recorded samples lie close together, but for a step of nearly a whole turn at the seam.
+    """
+    found, notes = waypoints.copy(), []
+    for j, kind in enumerate(arm.solver.joint_types):
+        q = waypoints[:, j]
+        steps = np.abs(np.diff(q))
+        seams = np.abs(steps - 2 * np.pi) < _CLOSE
+        recorded = np.ptp(q) < 2 * np.pi + _ROUNDING and ((steps < _CLOSE) | seams).all()
+        if kind == "continuous" and recorded and 0 < 2 * seams.sum() < len(steps):
+            found[:, j] = np.unwrap(q)
+            notes.append(
+                f"{arm.joint_names[j]} goes on over the seam of its turn in {counted(int(seams.sum()), 'place')}"
+            )
+    return found, notes
 
 
 def _changed(limits: MotionLimits, **changes: Floats) -> MotionLimits:
@@ -371,9 +418,12 @@ def _weighted(
 
 
 def _by_acceleration(
-    solver: Solver, path: JointPath, limits: MotionLimits, options: RetimeOptions
+    solver: Solver, fastest: TimedPath, limits: MotionLimits, options: RetimeOptions
 ) -> tuple[float, TimedPath | None]:
-    """The greatest acceleration limit, the same for all joints, under which torques hold, and its motion."""
+    """The greatest acceleration limit, the same for all joints, under which torques hold, and its motion.
+
+    Torques are about linear in it, so the search interpolates: by false position [Illinois algorithm].
+    """
     band = torque_band(solver, options.margin)
     n = len(solver.joint_names)
     own = limits.acceleration if len(limits.acceleration) else np.full(n, np.inf)
@@ -382,23 +432,37 @@ def _by_acceleration(
     )
     speeds = {"start_speed": options.start_speed, "end_speed": options.end_speed}
     grid = RetimeOptions(points=options.points, **speeds)
+    grid_times = (fastest.time[1:] + fastest.time[:-1]) / 2
 
-    def motion(acceleration: float) -> TimedPath | None:
+    def use(q: Floats, qd: Floats, qdd: Floats) -> float:
+        room = np.maximum(torque_limit(limits, qd) - band, _LEAST)
+        return float((np.abs(solver.torques(q, qd, qdd)) / room).max())
+
+    def motion(acceleration: float) -> tuple[float, TimedPath | None]:
         common = _changed(unlimited, acceleration=np.minimum(own, acceleration))
         try:
-            timed = retime_path(solver, path, common, grid)
+            timed = retime_path(solver, fastest.path, common, grid)
         except UserError:  # a speed at an end is too high
-            return None
-        states = timed.states(sample_times(timed.duration, 500.0))
-        held = np.abs(solver.torques(*states)) <= torque_limit(limits, states[1]) - band
-        return timed if held.all() else None
+            return np.inf, None
+        middles = (timed.time[1:] + timed.time[:-1]) / 2
+        return use(*timed.states(np.sort(np.append(timed.time, middles)))), timed
 
-    low, high = 1e-2, 1e3
-    found = motion(low)
-    if found is None:
-        return np.nan, None
-    for _ in range(14):
-        middle = float(np.sqrt(low * high))
-        tried = motion(middle)
-        low, high, found = (middle, high, tried) if tried else (low, middle, found)
-    return low, found
+    q, qd, qdd = fastest.states(grid_times)
+    low, low_use = 0.0, use(q, _STILL * qd, np.zeros_like(q))
+    high = float(np.abs(qdd).max())
+    high_use, timed = motion(high)
+    if high_use <= 1.0 or low_use > 1.0 or timed is None:
+        return (high, timed) if high_use <= 1.0 else (np.nan, None)
+    found: tuple[float, TimedPath | None] = (np.nan, None)
+    for _ in range(_MOST_STEPS):
+        middle = low + (high - low) * (_AIM - low_use) / (high_use - low_use)
+        middle_use, timed = motion(middle)
+        if middle_use <= 1.0:
+            low, low_use, found = middle, middle_use, (middle, timed)
+            high_use = 1.0 + (high_use - 1.0) / 2
+        else:
+            high, high_use = middle, middle_use
+            low_use = 1.0 - (1.0 - low_use) / 2
+        if timed is None or _ABOUT_ONE < middle_use <= 1.0:
+            break
+    return found

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.base.located_yaml import read_mapping
 from inverse_dynamics.base.wording import shown
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.robot.descriptions import (
@@ -28,6 +29,7 @@ from inverse_dynamics.robot.descriptions import (
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
     from xml.etree.ElementTree import Element
 
     from inverse_dynamics.base.arrays import Floats
@@ -84,6 +86,19 @@ def chain_geometry(
         kind = joint.get("type", "")
         chain.append(JointGeometry(name, kind, parent, xyz, rpy, _axis(joint), _limits(joint)))
     return tuple(chain)
+
+
+def model_limits(file: Path) -> list[dict[str, float]]:
+    """Stated limits of the joints of a model file, which a solver has read."""
+    joints = read_mapping(file, RobotError).required("joints").entries()
+    stated = [joint.mapping().optional("limits") for joint in joints]
+    names = ("lower", "upper", "velocity", "effort")
+    return [
+        {name: one.number() for name in names if (one := limits.mapping().optional(name))}
+        if limits
+        else {}
+        for limits in stated
+    ]
 
 
 def rotation_of(rpy: Floats) -> Floats:

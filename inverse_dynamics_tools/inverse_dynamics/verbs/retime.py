@@ -59,7 +59,7 @@ def declare(options: Options) -> None:
     limits.add("--torque A,B,...", "N m (default: of the robot description)", numbers)
     limits.add("--velocity A,B,...", "rad/s (default: of the robot description)", numbers)
     limits.add("--acceleration A,B,...", "rad/s^2", numbers)
-    limits.add("--jerk A,B,...", "rad/s^3, by a pass after the optimisation", numbers)
+    limits.add("--jerk A,B,...", "rad/s^3", numbers)
     limits.add("--knee-velocity A,B,...", "rad/s, above it torque limits fall in a line", numbers)
     limits.add("--no-load-velocity A,B,...", "rad/s, there they are zero", numbers)
     limits.add("--tip-speed M/S", "speed of the tip, m/s", positive_number)
@@ -89,22 +89,20 @@ def run(arguments: argparse.Namespace) -> None:
         arguments.out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs
     )
 
-    from inverse_dynamics._core import RetimeOptions
-    from inverse_dynamics.evaluation.evaluation import Arm
-    from inverse_dynamics.evaluation.retiming import PER_JOINT, description_limits, retime
+    from inverse_dynamics._core import MotionLimits, RetimeOptions
+    from inverse_dynamics.evaluation.retiming import PER_JOINT, retime
     from inverse_dynamics.report.tables import retime_table
     from inverse_dynamics.results.retimed import PAGE, summary, write_retimed
     from inverse_dynamics.verbs.screen import show, title
     from inverse_dynamics.verbs.tables import on_screen
 
     given = {name: getattr(arguments, name) for name in PER_JOINT if getattr(arguments, name)}
-    limits = description_limits(Arm(robot), robot, **given)
     if arguments.tip_speed:
-        limits.tip_speed = arguments.tip_speed
+        given["tip_speed"] = arguments.tip_speed
     result = retime(
         arguments.path,
         robot,
-        limits,
+        MotionLimits(**given),
         topic=arguments.topic or "",
         deviation=arguments.deviation,
         stops=arguments.stops,
@@ -123,8 +121,8 @@ def run(arguments: argparse.Namespace) -> None:
         inputs=inputs,
     )
     by_acceleration = [
-        f"{other.duration:.3f} s with at most {result.acceleration:.3g} rad/s^2 in each joint, the most that "
-        "keeps torques within limits here"
+        f"{other.duration:.3f} s with at most {result.acceleration:.3g} rad/s^2 in each joint, torques within "
+        "limits"
         for other in (result.by_acceleration,)
         if other is not None
     ]
