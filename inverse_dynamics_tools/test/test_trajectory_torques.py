@@ -202,7 +202,7 @@ def test_positions_alone_are_enough_where_they_are_dense(tmp_path, robot, torque
     assert difference < 0.02 * np.abs(torques).max()  # of the filter
     assert result.notes[0].startswith("no velocities or accelerations: those of the positions")
     write_table(tmp_path / "q.csv", columns | {"time": 1e-6 * stamps})
-    with pytest.raises(BagError, match="expected seconds, got steps of 4: are they ms"):
+    with pytest.raises(BagError, match=r"velocity and acceleration, got steps of 4: are they ms"):
         trajectory_torques(tmp_path / "q.csv", robot)
 
 

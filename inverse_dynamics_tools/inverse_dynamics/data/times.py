@@ -142,12 +142,12 @@ def sure_unit(time: Floats, numbers: Mapping[str, Floats]) -> tuple[str, str]:
     return "", ""
 
 
-def check_seconds(where: str, time: Floats) -> None:
+def check_seconds(where: str, time: Floats, expected: str = "seconds") -> None:
     """Raise BagError if (N,) the time of a motion can't be in seconds."""
     period, unit = _period(time)
     if period >= _LONGEST_PERIOD:
         raise BagError(
-            f"{where}: {TIME}: expected seconds, got steps of {period:g}: are they {unit}? Then state "
+            f"{where}: {TIME}: expected {expected}, got steps of {period:g}: are they {unit}? Then state "
             f"--scale {TIME}={unit}"
         )
     if np.abs(time).max() >= _EPOCH[1]:

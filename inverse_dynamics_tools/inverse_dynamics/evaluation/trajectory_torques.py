@@ -178,7 +178,8 @@ def _states_of_table(
         )
     kinds, numbers = (VELOCITY, ACCELERATION), dict(motion.numbers)
     if not numbers.keys() >= {*kinds}:  # positions of points far apart don't determine the motion
-        check_seconds(f"{table.path}", motion.time)
+        wanted = "seconds in steps below 0.5, or columns of velocity and acceleration"
+        check_seconds(f"{table.path}", motion.time, wanted)
     notes = add_derivatives(motion.time, numbers, kinds)
     states = [numbers[kind] for kind in (POSITION, *kinds)]
     if _much_faster_than_it_moves(motion.time, *states[:2]):

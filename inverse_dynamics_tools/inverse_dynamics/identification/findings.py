@@ -87,7 +87,7 @@ def motion_findings(
         found.append(
             Finding(
                 "delay",
-                f"recorded efforts are {delay_told(delay)} (+- {1e3 * half:.2g} ms) than the states: fits make up "
+                f"recorded efforts are {delay_told(delay)} than the states, +- {1e3 * half:.2g} ms: fits make up "
                 "for it, held-out errors and bands don't, as solvers don't",
             )
         )
