@@ -149,7 +149,7 @@ class ContactArm:
         self.home, self.range = HOME[name], RANGE[name]
         chain = chain_from_urdf(urdf_of(name), *CHAINS[name])
         self.velocity, self.tip = chain.velocity, chain.tip
-        spec = _read_spec(chain)
+        spec, _ = _read_spec(chain)
         inertia = _inertia(spec)
         for geom in spec.geoms:
             geom.contype = geom.conaffinity = 0

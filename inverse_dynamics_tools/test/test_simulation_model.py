@@ -39,6 +39,13 @@ def test_dynamics_are_those_of_the_reference_states(name: str) -> None:
         np.testing.assert_allclose(arm.inertia_matrix(np.array(state["q"])), H, rtol=0, atol=1e-12)
 
 
+def test_warnings_of_mujoco_are_notes(capfd: pytest.CaptureFixture[str]) -> None:
+    limit = '<limit lower="0" upper="0" velocity="3" effort="50"/>'
+    robot = SimulatedRobot.from_urdf(pendulum(limit=limit))
+    assert "joint 'swing' has equal lower and upper limits" in robot.chain.notes[-1]
+    assert capfd.readouterr() == ("", "")
+
+
 def test_inertia_that_breaks_the_triangle_inequality_is_kept() -> None:
     moments = simulated("panda").model.body("fer_link4").inertia
     expected = np.linalg.eigvalsh(

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import partial
 from pathlib import Path
 
@@ -149,7 +150,9 @@ def test_optimise_stores_what_it_found(
 ) -> None:
     bag = searched(tmp_path, monkeypatch, "--optimise", "--seed", "1")
     printed = capsys.readouterr()
-    assert "condition number of the base regressor" in printed.out
+    assert re.search(
+        r"trajectory +0.2 of \d+ s, condition number of the base regressor", printed.out
+    )
     assert printed.err == SEARCHING.format("")
     found = yaml.safe_load((bag / "trajectory.yaml").read_text())
     assert "seed 1" in found["source"]

@@ -33,6 +33,7 @@ from inverse_dynamics.simulation.excitation import (
     optimise_excitation,
 )
 from inverse_dynamics.simulation.information import sample_weight
+from inverse_dynamics.simulation.limits import MotionLimits
 from inverse_dynamics.simulation.modelled import description_of, simulated_robot
 from inverse_dynamics.simulation.trajectory import read_trajectory, trajectory_text
 
@@ -145,7 +146,7 @@ def excite(
     states = unknowns.random_states(_TEST_STATES, seed=2)
     deviation = {"description": unknowns.deviations(None, states)}
     deviation |= {name: unknowns.deviations(gram, states) for name, gram in motions.items()}
-    greatest, travel = _use_of_limits(found)
+    greatest, travel = _use_of_limits(found, MotionLimits.of(simulated, options.time_to_full_speed))
     return ExcitationResult(
         robot=robot,
         joint_names=robot.joints or simulated.chain.joint_names,
@@ -241,11 +242,12 @@ def write_excitation(
     out = Path(out)
     check_output(out, result.robot, (), overwrite=overwrite)
     trajectory = result.excitation.trajectory
-    what = "a payload" if result.options.payload else "identification"
-    source = (
-        f"Exciting motion of {result.robot.name} for {what}, made by ids excite: condition number of the "
-        f"base regressor {result.excitation.condition_number:.4g}."
-    )
+    source = f"Exciting motion of {result.robot.name} for "
+    if result.options.payload:  # the rest of the arm rests
+        source += "a payload, made by ids excite."
+    else:
+        condition = result.excitation.condition_number
+        source += f"identification, made by ids excite: condition number of the base regressor {condition:.4g}."
     with files_written_whole([out, sending_file(out)]) as (motion, message):
         write_text(motion, trajectory_text(trajectory, source))
         write_text(message, message_text(trajectory, result.joint_names, step))
@@ -336,9 +338,8 @@ def _resting(robot: SimulatedRobot, recordings: Sequence[Evaluation]) -> list[st
     return notes
 
 
-def _use_of_limits(found: Excitation) -> tuple[Floats, Floats]:
+def _use_of_limits(found: Excitation, limits: MotionLimits) -> tuple[Floats, Floats]:
     """Greatest velocity, acceleration and torque (3, n), share of each limit; range of positions (n, 2)."""
-    limits = found.unknowns.limits
     q, qd, qdd = found.trajectory.at(np.linspace(0.0, found.trajectory.duration, 2001))
     tau = found.unknowns.rows_and_torques(q, qd, qdd)[1]
     greatest = np.abs([qd, qdd, tau]).max(axis=1)

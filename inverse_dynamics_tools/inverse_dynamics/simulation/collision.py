@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.extras import lazily_imported
+from inverse_dynamics.simulation.model import spec_of
 
 if TYPE_CHECKING:
     import mujoco
@@ -97,7 +98,7 @@ class ContactChecker:
 
 
 def _collision_model(robot: SimulatedRobot, clearance: float, table: bool) -> mujoco.MjModel:
-    spec = mujoco.MjSpec.from_string(robot.chain.urdf)
+    spec, _ = spec_of(robot.chain.urdf)
     spec.compiler.fusestatic = False
     spec.compiler.discardvisual = True
     spec.compiler.balanceinertia = True

@@ -203,10 +203,11 @@ def _check_limits(robot: SimulatedRobot, limits: MotionLimits) -> None:
             )
 
 
-def condition_of(robot: SimulatedRobot, trajectory: Trajectory) -> float:
-    """Condition number of the base regressor over a trajectory."""
+def condition_of(robot: SimulatedRobot, trajectory: Trajectory, duration: float = np.inf) -> float:
+    """Condition number of the base regressor over a trajectory, or the first seconds of it."""
     engine = engine_of(robot)
-    time = np.linspace(0.0, trajectory.duration, _CONDITION_SAMPLES, endpoint=False)
+    end = min(duration, trajectory.duration)
+    time = np.linspace(0.0, end, _CONDITION_SAMPLES, endpoint=False)
     return condition_number(engine.regressor(*trajectory.at(time)), base_count(engine))
 
 
@@ -254,7 +255,8 @@ def _shrunk_until_free(
         else:
             return trajectory
     raise SimulationError(
-        f"no exciting trajectory was found (the last one: {reason}); try another --seed"
+        f"no exciting motion of {trajectory.duration:g} s was found ({str(reason).rpartition('; ')[0]}); a longer "
+        "--duration takes less speed, acceleration and effort"
     )
 
 

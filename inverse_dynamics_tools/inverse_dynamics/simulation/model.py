@@ -134,7 +134,8 @@ class SimulatedRobot:
         chain = chain_from_urdf(urdf, root, tip)
         if payload is not None:
             chain = _loaded(chain, payload)
-        spec = _read_spec(chain)
+        spec, warnings = _read_spec(chain)
+        chain = replace(chain, notes=(*chain.notes, *warnings))
         inertia = _inertia(spec)
         try:
             model = spec.compile()
@@ -192,15 +193,25 @@ class SimulatedRobot:
         return np.array(full[np.ix_(self.dofs, self.dofs)])
 
 
-def _read_spec(chain: UrdfChain) -> mujoco.MjSpec:
+def spec_of(urdf: str) -> tuple[mujoco.MjSpec, list[str]]:
+    """A description as MuJoCo reads it, and its warnings, which else are written to the screen."""
+    warnings: list[str] = []
+    mujoco.set_mju_user_warning(warnings.append)
     try:
-        spec = mujoco.MjSpec.from_string(chain.urdf)
+        return mujoco.MjSpec.from_string(urdf), warnings
+    finally:
+        mujoco.set_mju_user_warning(None)
+
+
+def _read_spec(chain: UrdfChain) -> tuple[mujoco.MjSpec, list[str]]:
+    try:
+        spec, warnings = spec_of(chain.urdf)
     except ValueError as error:
         raise SimulationError(f"robot description: MuJoCo can't read it: {_line(error)}") from error
     spec.compiler.fusestatic = False  # each link stays a body, so its inertia can be compared
     spec.compiler.balanceinertia = True
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
-    return spec
+    return spec, [f"robot description: MuJoCo: {warning}" for warning in warnings]
 
 
 def _line(error: Exception) -> str:

@@ -200,7 +200,7 @@ def simulate(
         recorded=recorded,
         trajectory=chosen,
         trajectory_source=source,
-        condition_number=condition_of(simulated, chosen),
+        condition_number=condition_of(simulated, chosen, duration),
         settings=settings,
         notes=tuple(notes),
     )

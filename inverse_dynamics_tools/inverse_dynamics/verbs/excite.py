@@ -138,10 +138,9 @@ def run(arguments: argparse.Namespace) -> None:
     write_excitation(result, arguments.out, overwrite=arguments.overwrite, step=arguments.step)
     files = [arguments.out, sending_file(arguments.out)]
     found = result.excitation
-    motion = (
-        f"{found.trajectory.duration:g} s, condition number of the base regressor "
-        f"{found.condition_number:.1f}"
-    )
+    motion = f"{found.trajectory.duration:g} s"
+    if not options.payload:  # else most of the arm rests
+        motion += f", condition number of the base regressor {found.condition_number:.1f}"
     show(
         arguments,
         summary(result),

@@ -229,11 +229,13 @@ def _summary(result: SimulatedRun) -> dict[str, Any]:
 def _lines(result: SimulatedRun, out: Path) -> list[Line]:
     settings, log = result.settings, result.log
     excitation = f"condition number of the base regressor {result.condition_number:.4g}"
+    whole, seconds = result.trajectory.duration, settings["duration"]
+    played = f"{whole:g}" if seconds >= whole else f"{seconds:g} of {whole:g}"
     size = f"{counted(len(log), 'message')} of {counted(len(log.joint_names), 'joint')}"
     rate = settings["message_rate"] or settings["rate"]
     return [
         ("note", result.notes),
-        ("trajectory", f"{result.trajectory.duration:g} s, {excitation}"),
+        ("trajectory", f"{played} s, {excitation}"),
         ("recording", f"{out}, {log.topic}: {size}, {settings['duration']:g} s at {rate:g} Hz"),
     ]
 
