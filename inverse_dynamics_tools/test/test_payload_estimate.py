@@ -436,11 +436,11 @@ def sines(solver, size, rate=RATE, seed=1):
     return Samples(time, *states, solver.torques(*states) + noise)
 
 
-def carrying(tmp_path, urdf):
+def carrying(tmp_path, urdf, size=(1.0, 1.2, 0.05)):
     """What is found in a recording of an arm that carries 1 kg."""
     arm = arm_of(tmp_path, urdf)
     solver = open_solver(arm, urdf)
-    samples = with_load(sines(solver, [1.0, 1.2, 0.05]), solver, CARRIED)
+    samples = with_load(sines(solver, np.array(size)), solver, CARRIED)
     return estimate_payload(table(tmp_path / "loaded.csv", samples, solver.joint_names), arm)
 
 
@@ -455,7 +455,7 @@ def test_noise_of_accelerations_shrinks_no_mass(tmp_path, urdf, is_empty_known):
         smooth = [np.convolve(column, np.full(8, 0.02), "same") for column in noise.T]
         return replace(samples, qdd=samples.qdd + np.transpose(smooth))
 
-    alone, other = (sines(solver, [1.0, 1.2, 0.5], rate=500, seed=s) for s in (1, 2))
+    alone, other = (sines(solver, np.array([1.0, 1.2, 0.5]), rate=500, seed=s) for s in (1, 2))
     samples = recorded(with_load(alone, solver, CARRIED), 3)
     empty = empty_run(recorded(other, 4), solver) if is_empty_known else None
     found = fit_payload(samples, solver, empty).estimate
@@ -485,6 +485,11 @@ def test_a_direction_that_no_joint_bears_is_no_reason_to_refuse(tmp_path):
     assert ", any\n" in text
     assert json.loads((tmp_path / "p.json").read_text())["center_of_mass_half_width"][2] is None
     assert option(str(tmp_path / "p.yaml"))["payload.center_of_mass"][2] == 0.0
+
+
+def test_a_position_that_gravity_never_shows_needs_faster_joints(tmp_path):
+    with pytest.raises(PayloadError, match=r"along y \(.*gravity never shows it, accelerations do"):
+        carrying(tmp_path, SCARA, size=(0.05, 0.05, 0.5))
 
 
 def test_the_tip_of_a_model_cant_be_chosen(tmp_path):
