@@ -101,7 +101,7 @@ def _short_help(parser: argparse.ArgumentParser, examples: list[str]) -> list[st
         if options:
             lines.append(f"{group.title}: {', '.join(options)}")
     lines.append(f"all of it: {parser.prog} --help")
-    return wrapped("\n".join(lines), terminal_width())
+    return [row for part in lines for row in wrapped(part, terminal_width()) or [""]]
 
 
 def _usage(action: argparse.Action) -> str:

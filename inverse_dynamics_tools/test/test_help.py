@@ -31,6 +31,7 @@ def test_short_help_fits_one_screen(ids, monkeypatch, verb):
     assert len(lines) <= 23  # and the prompt
     assert [line for line in lines if len(line) > 80] == []
     assert "--help" in lines[-1]
+    assert not re.search(r" (options|overrides of the run configuration|the path):", out)
 
 
 def test_errors_fit_the_terminal(ids, monkeypatch):

@@ -414,7 +414,8 @@ def test_page_races_both_motions(fastest, tmp_path):
     [
         (["--torque", "1,2"], "expected 1 number or 6, one per joint"),
         (["--torque", "20"], "shoulder_lift_joint lacks"),
-        (["--margin", "0.95"], "a model that states the deviation"),
+        (["--jerk", "0"], "error: --jerk of shoulder_pan_joint: expected a finite number > 0"),
+        (["--margin", "0.95"], "error: --margin: expected 0, or a model that states the deviation"),
         (["--stops", "9"], "expected 0 to 3, got 9"),
     ],
 )

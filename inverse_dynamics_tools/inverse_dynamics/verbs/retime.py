@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.errors import UserError
 from inverse_dynamics.verbs.options import SOLVER, TABLE, Options, chosen_robot, given_overrides
 from inverse_dynamics.verbs.values import numbers, positive_number, share, whole_numbers
 
@@ -50,11 +52,11 @@ def declare(options: Options) -> None:
     )
     way.add("--stops K,K,...", "waypoints to stand still at, from 0", whole_numbers, default=())
     way.add(
-        "--start-speed RAD/S",
-        "ds/dt at its start, s: way from waypoint to waypoint",
+        "--start-speed SPEED",
+        "rad/s at its start: the root of the sum of squares over the joints",
         positive_number,
     )
-    way.add("--end-speed RAD/S", "and at its end", positive_number)
+    way.add("--end-speed SPEED", "and at its end", positive_number)
     limits = options.group("limits, one for all joints or one for each")
     limits.add("--torque A,B,...", "N m (default: of the robot description)", numbers)
     limits.add("--velocity A,B,...", "rad/s (default: of the robot description)", numbers)
@@ -75,6 +77,13 @@ def declare(options: Options) -> None:
 
 def _distance(text: str) -> float:
     return 0.0 if text.strip() == "0" else positive_number(text)
+
+
+def _of_options(text: str) -> str:
+    """The text of an error of retime(), with the names of options."""
+    return re.sub(
+        r"retime\(\): (?:limits|options)\.(\w+)", lambda m: "--" + m[1].replace("_", "-"), text
+    )
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -99,20 +108,23 @@ def run(arguments: argparse.Namespace) -> None:
     given = {name: getattr(arguments, name) for name in PER_JOINT if getattr(arguments, name)}
     if arguments.tip_speed:
         given["tip_speed"] = arguments.tip_speed
-    result = retime(
-        arguments.path,
-        robot,
-        MotionLimits(**given),
-        topic=arguments.topic or "",
-        deviation=arguments.deviation,
-        stops=arguments.stops,
-        weight=arguments.weight or 0.0,
-        options=RetimeOptions(
-            margin=arguments.margin or 0.0,
-            start_speed=arguments.start_speed or 0.0,
-            end_speed=arguments.end_speed or 0.0,
-        ),
-    )
+    try:
+        result = retime(
+            arguments.path,
+            robot,
+            MotionLimits(**given),
+            topic=arguments.topic or "",
+            deviation=arguments.deviation,
+            stops=arguments.stops,
+            weight=arguments.weight or 0.0,
+            options=RetimeOptions(
+                margin=arguments.margin or 0.0,
+                start_speed=arguments.start_speed or 0.0,
+                end_speed=arguments.end_speed or 0.0,
+            ),
+        )
+    except UserError as error:
+        raise type(error)(_of_options(f"{error}")) from error
     write_retimed(
         result,
         arguments.out,

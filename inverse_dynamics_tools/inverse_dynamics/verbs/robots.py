@@ -119,7 +119,7 @@ def _rows(robot: Robot, arm: Arm, notes: list[str]) -> list[tuple[str, str]]:
         "root, tip": f"{robot.root or '(the first link)'}, {robot.tip or '(the last link)'}",
         "chain": ", ".join(arm.joint_names),
         "gravity": "(the solver's default)" if gravity is None else f"{list(gravity)} m/s²",
-        "friction": "yes" if robot.friction else "no",
+        "friction": "yes" if robot.friction and _rubs(arm) else "no",
         "topic": robot.topic,
         "joints": ", ".join(robot.joints) or "(named as in the chain)",
         "effort": f"{robot.effort}: {EFFORT_CHOICES[robot.effort]}",
@@ -130,6 +130,12 @@ def _rows(robot: Robot, arm: Arm, notes: list[str]) -> list[tuple[str, str]]:
         "file": str(robot.file),
     }
     return [(k, text) for k, text in rows.items() if text] + [("note", note) for note in notes]
+
+
+def _rubs(arm: Arm) -> bool:
+    """Whether the model states any friction."""
+    ones = [1.0] * len(arm.joint_names)
+    return bool(arm.solver.friction_vector(ones, q=ones).any())
 
 
 def _checked(robot: Robot) -> tuple[Arm, list[str]]:
