@@ -9,6 +9,11 @@
 
 namespace inverse_dynamics_control {
 inline namespace v2 {
+namespace {
+
+constexpr double kLongestPeriod = 1.0;  // s
+
+}  // namespace
 
 OutputStage::OutputStage(const OutputLimits& limits, const std::vector<std::string>& joint_names,
                          const std::string& law)
@@ -33,11 +38,12 @@ void OutputStage::start(const Eigen::Ref<const Eigen::VectorXd>& effort) noexcep
 
 Status OutputStage::apply(const Eigen::Ref<const Eigen::VectorXd>& desired, double period,
                           Eigen::Ref<Eigen::VectorXd> tau) noexcept {
+  const bool timed = period > 0 && period <= kLongestPeriod;  // no NaN is
   for (Eigen::Index j = 0; j < last_.size(); ++j) {
     // Infinity times zero is NaN, so joints without a rate limit are left out.
     double reachable = desired[j];
     if (started_ && std::isfinite(limits_.rate[j])) {
-      const double change = period > 0 ? limits_.rate[j] * period : 0.0;
+      const double change = timed ? limits_.rate[j] * period : 0.0;
       reachable = std::clamp(desired[j], last_[j] - change, last_[j] + change);
     }
     saturated_[j] = std::abs(desired[j]) > limits_.effort[j];
@@ -46,6 +52,7 @@ Status OutputStage::apply(const Eigen::Ref<const Eigen::VectorXd>& desired, doub
   }
   tau = last_;
   started_ = true;
+  if (!timed) return Status::kNoPeriod;
   if (saturated_.any()) return Status::kSaturated;
   return rate_limited_.any() ? Status::kRateLimited : Status::kOk;
 }

@@ -12,6 +12,8 @@ const char* text(Status status) noexcept {
       return "a joint's torque was cut to its effort limit";
     case Status::kRateLimited:
       return "a joint's torque was held back by its rate limit";
+    case Status::kNoPeriod:
+      return "the period isn't above zero and up to a second: torques with a rate limit are held";
     case Status::kReferenceNotFinite:
       return "the reference isn't finite: safe torque instead";
     case Status::kStateNotFinite:

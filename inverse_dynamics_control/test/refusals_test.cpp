@@ -29,12 +29,13 @@ struct Laws {
   Eigen::VectorXd tau = vec({0.0});
 
   template <class Check>
-  void update(const JointState& state, const Reference& reference, const Check& check) {
-    Status status = computed_torque.update(state, reference, kPeriod, tau);
+  void update(const JointState& state, const Reference& reference, const Check& check,
+              double period = kPeriod) {
+    Status status = computed_torque.update(state, reference, period, tau);
     check(status, tau[0], "computed torque");
-    status = gravity_compensation.update(state, reference.qd, kPeriod, tau);
+    status = gravity_compensation.update(state, reference.qd, period, tau);
     check(status, tau[0], "gravity compensation");
-    status = feed_forward.update(state, reference, vec({0.0}), kPeriod, tau);
+    status = feed_forward.update(state, reference, vec({0.0}), period, tau);
     check(status, tau[0], "feed-forward");
   }
 };
@@ -115,6 +116,19 @@ TEST(Refusals, FaultySolverGivesTheLastGravityAndDamping) {
   }
 }
 
+TEST(Refusals, APeriodThatIsNoneIsReportedWithTheLawsTorque) {
+  Laws laws;
+  for (const double period : {0.0, -1.0, kNan, kInfinity, 1e9}) {
+    laws.update(
+        stateOf(vec({1.0}), vec({0.0})), kReference,
+        [](Status status, double tau, const char* law) {
+          EXPECT_EQ(status, Status::kNoPeriod) << law;
+          EXPECT_NEAR(tau, gravityAt(1.0), kRounding) << law;
+        },
+        period);
+  }
+}
+
 TEST(Refusals, OverflowIsNoTorque) {
   Laws laws;
   Eigen::VectorXd tau(1);
@@ -184,6 +198,7 @@ TEST(Status, RefusalsAreTold) {
   EXPECT_FALSE(isRefusal(Status::kOk));
   EXPECT_FALSE(isRefusal(Status::kSaturated));
   EXPECT_FALSE(isRefusal(Status::kRateLimited));
+  EXPECT_FALSE(isRefusal(Status::kNoPeriod));
   for (const Status status :
        {Status::kReferenceNotFinite, Status::kStateNotFinite, Status::kTorqueNotFinite,
         Status::kSolverFailed, Status::kWrongSize}) {

@@ -46,7 +46,7 @@ class UpdateReport {
   std::string names(std::uint64_t mask) const;
 
   std::vector<std::string> joints_;
-  std::array<std::atomic<std::uint32_t>, 8> cycles_{};  // by Status
+  std::array<std::atomic<std::uint32_t>, 9> cycles_{};  // by Status
   std::atomic<std::uint64_t> saturated_{0}, rate_limited_{0};
   std::atomic<std::uint32_t> not_written_{0};
   std::atomic<int> stop_{0}, stop_joint_{-1}, given_up_{0};

@@ -89,6 +89,7 @@ void bindLawEnums(py::module_& module) {
       .value("OK", Status::kOk)
       .value("SATURATED", Status::kSaturated)
       .value("RATE_LIMITED", Status::kRateLimited)
+      .value("NO_PERIOD", Status::kNoPeriod)
       .value("REFERENCE_NOT_FINITE", Status::kReferenceNotFinite)
       .value("STATE_NOT_FINITE", Status::kStateNotFinite)
       .value("TORQUE_NOT_FINITE", Status::kTorqueNotFinite)

@@ -136,6 +136,11 @@ def test_limits_and_safe_torque(solver):
     assert status.is_refusal
     assert status.text == "the measured state isn't finite: safe torque instead"
     assert law.update(q[:3], qd, PERIOD)[1] == Status.WRONG_SIZE
+    held = law.update(q, 0 * qd, PERIOD)[0]
+    for period in (0.0, -1.0, np.nan, 1e9):
+        tau, status = law.update(0 * q, 0 * qd, period)
+        np.testing.assert_array_equal(tau, held)
+        assert status == Status.NO_PERIOD
 
 
 def test_safe_stop(solver):

@@ -68,7 +68,7 @@ class ControlLaw {
   ///
   /// @param period    s since the last call of hold() or update(), for the rate limit.
   /// @param[out] tau  n; N m (prismatic N).
-  /// @return kOk, kSaturated, kRateLimited, kStateNotFinite or kWrongSize.
+  /// @return kOk, kSaturated, kRateLimited, kNoPeriod, kStateNotFinite or kWrongSize.
   Status hold(const JointState& state, double period, VectorRef tau) noexcept;
 
   /// Other damping from the next call of hold() or update() on; for the thread that calls them. The

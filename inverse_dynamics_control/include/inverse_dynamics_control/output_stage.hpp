@@ -50,10 +50,10 @@ class OutputStage {
   /// The torque nearest to the desired one that the limits allow.
   ///
   /// @param desired    n, finite; N m (prismatic N).
-  /// @param period    s since the last call, for the rate limit; a non-positive one (a clock
-  ///                  that stands or jumps back) allows no change.
+  /// @param period    s since the last call, for the rate limit; one that isn't above zero and up
+  ///                  to 1 s (a clock that stands or jumps) allows no change.
   /// @param[out] tau  n; N m (prismatic N).
-  /// @return kSaturated, kRateLimited or kOk, the first that is true of a joint.
+  /// @return kNoPeriod, kSaturated, kRateLimited or kOk, the first that is true.
   Status apply(const Eigen::Ref<const Eigen::VectorXd>& desired, double period,
                Eigen::Ref<Eigen::VectorXd> tau) noexcept;
 

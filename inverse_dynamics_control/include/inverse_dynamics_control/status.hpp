@@ -15,6 +15,7 @@ enum class Status {
   kOk,                  ///< the law's torque, as it is
   kSaturated,           ///< a joint's torque was cut to its effort limit: ControlLaw::saturated()
   kRateLimited,         ///< a joint's torque changes slower than desired: ControlLaw::rateLimited()
+  kNoPeriod,            ///< a period not above zero and up to 1 s: joints with a rate limit hold
   kReferenceNotFinite,  ///< a reference, or the effort of another controller, is NaN or infinite
   kStateNotFinite,      ///< a measured position or velocity is NaN or infinite
   kTorqueNotFinite,     ///< the law's torque is NaN or infinite though its inputs aren't
