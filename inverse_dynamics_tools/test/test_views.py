@@ -84,6 +84,7 @@ def test_an_evaluation_is_shown_on_one_screen(evaluation):
         "Evaluation of arrays as ur10_simulated: 1500 samples, 6.0 s, mean RMSE 0.1"
     )
     assert lines[2].split()[:2] == ["shoulder_pan_joint", "N"]
+    assert re.search(r" [\d.e-]+ %", lines[2])  # NRMSE, as in tables
     assert len(lines) < 12
     html = evaluation._repr_html_()
     assert html.count("<tr>") == 7

@@ -47,8 +47,9 @@ class Views:
 
     def _rows(self: Any) -> list[tuple[str, ...]]:
         return [
-            (e.joint, e.unit, *(f"{x:.4g}" for x in (e.mae, e.rmse, e.nrmse, e.bias, e.r2)))
+            (e.joint, e.unit, *numbers[:2], f"{100 * e.nrmse:.3g} %", *numbers[2:])
             for e in self.errors
+            for numbers in [[f"{x:.4g}" for x in (e.mae, e.rmse, e.bias, e.r2)]]
         ]
 
     def plot(self) -> Any:
