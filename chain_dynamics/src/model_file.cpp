@@ -11,6 +11,7 @@
 #include "chain_dynamics/located_yaml.hpp"
 #include "joint_frame.hpp"
 #include "model_file_joint.hpp"
+#include "plausibility.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -41,7 +42,10 @@ Chain makeChain(const std::string& name, const std::vector<JointEntry>& entries,
     links.push_back(entry.own.empty() ? LinkParameters::zero() : inChain(entry, entry.own[0]));
     X_EU = entry.X_EU;
   }
-  return {name, std::move(joints), std::move(links), gravity, X_EU * X_U_tip};
+  const Chain chain(name, std::move(joints), std::move(links), gravity, X_EU * X_U_tip);
+  std::vector<std::string> warnings = chain.warnings();
+  for (std::string& doubt : limitDoubts(chain)) warnings.push_back(std::move(doubt));
+  return chain.withWarnings(std::move(warnings));
 }
 
 void addCoupling(const std::vector<JointEntry>& entries, Model& model) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain_dynamics/gravity_vector.hpp"
 #include "chain_dynamics/text.hpp"
 
 namespace chain_dynamics {
@@ -23,6 +24,11 @@ constexpr double kSamePlace = 1e-3;  // m between axes of one joint
 
 /// Of a joint's range: a measured position may lie beyond a limit by as much.
 constexpr double kBeyondLimit = 0.1;
+
+constexpr int kPostures = 16;
+constexpr double kWidestRange = 12.6;         // rad, the widest range of arms
+constexpr double kFastestJoint = 30;          // rad/s, of arms
+constexpr double kFourTurnsInDegrees = 1440;  // beyond it a number stands for no limit
 
 std::string shortText(double number) { return numberText(number, 3); }
 
@@ -81,7 +87,64 @@ std::string radiusDoubt(const RobotDescription::Link& link, const std::string& j
          shortText(length) + " m; check the units of <inertia> (kg m^2) and <mass> (kg)";
 }
 
+/// Least gravity torques of the joints in postures that are spread over their ranges; N m.
+Eigen::VectorXd leastGravity(const Chain& chain) {
+  constexpr double kGolden = 0.6180339887498949;
+  const auto n = static_cast<Eigen::Index>(chain.jointCount());
+  Eigen::VectorXd q(n), g(n), least = Eigen::VectorXd::Constant(n, INFINITY);
+  for (int posture = 1; posture <= kPostures; ++posture) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const JointLimits& limits = chain.joints()[static_cast<std::size_t>(i)].limits;
+      const double lower = std::max(limits.lower, -M_PI), upper = std::min(limits.upper, M_PI);
+      const double share = kGolden * posture * static_cast<double>(i + 1);
+      q[i] = lower < upper ? lower + (share - std::floor(share)) * (upper - lower) : 0.0;
+    }
+    gravityVector(chain, q, g);
+    least = least.cwiseMin(g.cwiseAbs());
+  }
+  return least;
+}
+
+std::string effortDoubt(const Chain& chain) {
+  const Eigen::VectorXd gravity = leastGravity(chain);
+  const auto use = [&](std::size_t i) {
+    const double effort = chain.joints()[i].limits.effort;
+    return effort > 0 ? gravity[static_cast<Eigen::Index>(i)] / effort : 0.0;
+  };
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < chain.joints().size(); ++i) worst = use(i) > use(worst) ? i : worst;
+  if (!(use(worst) > 1)) return "";
+  const Joint& joint = chain.joints()[worst];
+  const char* const unit = isPrismatic(joint) ? " N" : " N m";
+  return "joint " + joint.name + ": gravity takes " +
+         shortText(gravity[static_cast<Eigen::Index>(worst)]) + unit + " or more in " +
+         std::to_string(kPostures) + " postures, but its effort limit is " +
+         shortText(joint.limits.effort) + unit +
+         "; check the units of masses (kg), lengths (m) and efforts";
+}
+
+/// A sentence if a joint's limits are far beyond those of arms, but not in degrees.
+std::string degreesDoubt(const Joint& joint) {
+  const JointLimits& limits = joint.limits;
+  const double range = limits.upper - limits.lower;
+  const bool degrees = range > kWidestRange && range < kFourTurnsInDegrees &&
+                       limits.velocity > kFastestJoint && limits.velocity < kFourTurnsInDegrees;
+  if (isPrismatic(joint) || !degrees) return "";
+  return "joint " + joint.name + ": limits of " + shortText(limits.lower) + " to " +
+         shortText(limits.upper) + " rad and " + shortText(limits.velocity) +
+         " rad/s are implausible; are they in degrees?";
+}
+
 }  // namespace
+
+std::vector<std::string> limitDoubts(const Chain& chain) {
+  std::vector<std::string> texts{effortDoubt(chain)};
+  for (const Joint& joint : chain.joints()) texts.push_back(degreesDoubt(joint));
+  texts.erase(std::remove(texts.begin(), texts.end(), ""), texts.end());
+  std::transform(texts.begin(), texts.end(), texts.begin(),
+                 [](const std::string& one) { return printable(one); });
+  return texts;
+}
 
 std::vector<std::string> inertiaDoubts(const RobotDescription& robot, const Chain& chain,
                                        const std::vector<std::vector<std::size_t>>& parts) {

@@ -27,6 +27,10 @@ inline namespace v2 {
 std::vector<std::string> inertiaDoubts(const RobotDescription& robot, const Chain& chain,
                                        const std::vector<std::vector<std::size_t>>& parts);
 
+/// A sentence for a joint whose effort limit is below its gravity torque in every posture looked at, and
+/// for each whose limits are probably in degrees.
+std::vector<std::string> limitDoubts(const Chain& chain);
+
 /// A sentence if a joint's limits exclude a position; empty if they don't.
 std::string positionDoubt(const RobotDescription::Joint& joint, double position);
 

@@ -332,10 +332,10 @@ class Reader {
       }
     }
     if (roots.size() != 1) {
-      throw ModelError("URDF:" + std::to_string(robot.line()), "root",
-                       "one link that is no joint's child",
-                       std::to_string(roots.size()) + (roots.empty() ? "" : ": ") + joined(roots),
-                       "join them by fixed joints");
+      throw ModelError(
+          "URDF:" + std::to_string(robot.line()), "root", "one link that is no joint's child",
+          std::to_string(roots.size()) + (roots.empty() ? "" : ": ") + joined(roots),
+          roots.empty() ? "remove the joint that closes a loop" : "join them by fixed joints");
     }
   }
 

@@ -332,7 +332,8 @@ class Builder {
     if (joint.mimic) {
       throw ModelError(where(joint), "<mimic>", "a joint that moves by itself",
                        "one that follows joint " + robot_.joints[joint.mimic->joint].name,
-                       "choose root and tip so that it isn't between them");
+                       "choose root and tip so that it isn't between them; arms with a "
+                       "parallelogram aren't supported");
     }
     const Eigen::Vector3d axis = joint.axis.stableNormalized();
     const Matrix3<double> R_UE = rotationFromZ(up ? -axis : axis);
@@ -430,8 +431,9 @@ class Builder {
     warnOfSwappedEnds(texts);
     const std::vector<std::string> locked = locked_.warnings(options_.lump_attached);
     texts.insert(texts.end(), locked.begin(), locked.end());
-    const std::vector<std::string> doubts = inertiaDoubts(robot_, chain, parts_);
-    texts.insert(texts.end(), doubts.begin(), doubts.end());
+    for (const auto& doubts : {inertiaDoubts(robot_, chain, parts_), limitDoubts(chain)}) {
+      texts.insert(texts.end(), doubts.begin(), doubts.end());
+    }
     bool named = true;
     for (std::size_t i = 0; i < links_.size(); ++i) {
       named = (inertiaDefect(chain.links()[i]).empty() || addDefects(i, texts)) && named;

@@ -104,7 +104,7 @@ double UrdfElement::number(const char* key) const {
   const auto number = finiteNumber(value);
   if (!number) {
     throw error(tag() + " " + key, "a finite number", "'" + value + "'",
-                remedyFor(value, "write it with a decimal point"));
+                remedyFor(value, "write a finite number, with a decimal point and without a unit"));
   }
   return *number;
 }

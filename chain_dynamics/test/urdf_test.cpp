@@ -665,6 +665,31 @@ TEST(UrdfDoubts, InertiaOfABodyLargerThanTheArmIsAWarning) {
               ElementsAre(HasSubstr("4.65e+05 kg m^2 for 7.3 kg is implausible")));
 }
 
+/// Warnings of a chain of two links of that mass, at that distance.
+std::vector<std::string> warningsOfUnits(const std::string& mass, const std::string& length,
+                                         const std::string& limit) {
+  const std::string body =
+      "<inertial><origin xyz='" + length + " 0 0'/><mass value='" + mass +
+      "'/><inertia ixx='0' iyy='0' izz='0' ixy='0' ixz='0' iyz='0'/></inertial>";
+  const std::string origin = "<axis xyz='0 1 0'/><origin xyz='" + length + " 0 0'/>";
+  return chainFromUrdf(robot(link("base", "") + link("upper", body) + link("forearm", body) +
+                             joint("shoulder", "revolute", "base", "upper", origin + limit) +
+                             joint("elbow", "revolute", "upper", "forearm", origin + limit)))
+      .warnings();
+}
+
+TEST(UrdfDoubts, UnitsOfMassLengthAndLimitsThatNoArmHasAreAWarning) {
+  const std::string radians = "<limit lower='-2' upper='2' velocity='3' effort='50'/>";
+  EXPECT_THAT(warningsOfUnits("2", "0.2", radians), IsEmpty());
+  const auto gravity = ElementsAre(AllOf(HasSubstr("gravity takes"), HasSubstr("is 50 N m; ")));
+  EXPECT_THAT(warningsOfUnits("2000", "0.2", radians), gravity);
+  EXPECT_THAT(warningsOfUnits("2", "200", radians), gravity);
+  EXPECT_THAT(
+      warningsOfUnits("2", "0.2", "<limit lower='-120' upper='120' velocity='180' effort='50'/>"),
+      ElementsAre(HasSubstr("joint shoulder: limits of -120 to 120 rad and 180 rad/s"),
+                  HasSubstr("joint elbow")));
+}
+
 TEST(UrdfDoubts, InertiaThatHardlyCountsMayBeARoundNumber) {
   const std::string camera =
       "<inertial><mass value='0.001'/><inertia ixy='0' ixz='0' iyz='0' "
