@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
 /// @file
 /// Numbers of each joint from the parameters of a node and from a robot description.
 ///
+///     const std::vector<std::string> joints = solver->jointNames();
 ///     const DescribedLimits described = describedLimits(urdf, joints);
 ///     const auto effort = jointNumbers("limits.effort", {}, joints, described.effort);
+
 #pragma once
 
 #include <Eigen/Core>
