@@ -239,7 +239,7 @@ def test_a_gap_interrupts_the_estimate_and_not_the_contact(ids, tmp_path, motion
     assert code == 0
     text = " ".join(out.split())
     assert "interrupted 2 times, 0.333 s in all, the longest from 25.399 s to 25.65 s" in text
-    assert "unknown: 0.25 s" in text
+    assert "25.00 to 26.01 0.25 swing" in text
     summary = json.loads((tmp_path / "found" / "contacts.json").read_text())
     assert len(summary["interruptions"]) == 2
 

@@ -166,11 +166,12 @@ def held_out_table(
 def contact_table(contacts: Contacts) -> ReportTable:
     """One row per contact."""
     has_force = contacts.wrenches is not None
+    interrupted = any(c.unknown for c in contacts.contacts)
     force = ("mean force [N]", "peak force [N]", "direction", "unseen directions") * has_force
     rows: list[tuple[str | float, ...]] = [
         (
-            f"{c.begin:.2f} to {c.end:.2f}"
-            + (f"; unknown: {c.unknown:.2f} s" if c.unknown else ""),
+            f"{c.begin:.2f} to {c.end:.2f}",
+            *(f"{c.unknown:.2f}",) * interrupted,
             c.joint,
             c.torque,
             c.unit,
@@ -183,7 +184,7 @@ def contact_table(contacts: Contacts) -> ReportTable:
         "Torque: the greatest of the joint. Force: at the tip, if nothing else is touched; its direction in "
         "the axes of the root."
     )
-    headings = ("time [s]", "joint", "torque", "unit", *force)
+    headings = ("time [s]", *("unknown [s]",) * interrupted, "joint", "torque", "unit", *force)
     return ReportTable(title, headings, rows, note if has_force and rows else "")
 
 

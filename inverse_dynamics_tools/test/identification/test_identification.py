@@ -282,7 +282,7 @@ def test_without_a_least_noise_there_is_no_delay(monkeypatch):
     ("delay", "delays", "told"),
     [
         (-1e-4, [-2e-4, 0.0, -2e-4, 0.0, -1e-4], None),
-        (4e-3, [4.1e-3, 3.9e-3, 4e-3, 4.1e-3, 3.9e-3], "4.0 ms later (+- 0.5 ms)"),
+        (4e-3, [4.1e-3, 3.9e-3, 4e-3, 4.1e-3, 3.9e-3], "4.0 ms later than the states, +- 0.5 ms"),
         (0.0, [0.0] * 5, None),
     ],
 )
