@@ -49,8 +49,8 @@ def test_writes_a_motion_and_the_message_to_send(
     assert printed.err == "ids: searching for the motion, which takes about a minute ...\n"
     assert "motion         8 s, condition number of the base regressor" in printed.out
     assert "noise          1 % of each effort limit" in printed.out
-    (*_, last) = (line for line in printed.out.splitlines() if line.startswith("  fold"))
-    shares = [int(share) for share in last.split()[4:7]]
+    rows = re.findall("N m .*", printed.out)
+    shares = [int(share) for row in rows for share in row.split()[4:7]]
     assert 70 < max(shares) <= 80  # of the limits, of which --share leaves as much
     assert f"written        {out}, {tmp_path / 'motion_joint_trajectory.yaml'}" in printed.out
     motion, source = read_trajectory(out, ("shoulder", "lift", "fold"))
