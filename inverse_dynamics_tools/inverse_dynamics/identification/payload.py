@@ -17,13 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics._core import (
-    PayloadEstimator,
-    PayloadOptions,
-    PayloadStatus,
-    ResidualNoise,
-    residual_noise,
-)
+from inverse_dynamics._core import PayloadEstimator, PayloadOptions, PayloadStatus, residual_noise
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.errors import EvaluationError
@@ -38,7 +32,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any
 
-    from inverse_dynamics._core import ArmUncertainty, PayloadEstimate, Solver
+    from inverse_dynamics._core import ArmUncertainty, PayloadEstimate, ResidualNoise, Solver
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.robot.robots import Robot
@@ -245,8 +239,7 @@ def fit_payload(
     """
     before = samples.residual(solver)
     if empty is None:
-        # White at first: what the load does to the residuals is no noise that remembers.
-        options = PayloadOptions(ResidualNoise(before.std(axis=0), np.zeros(before.shape[1])))
+        options = PayloadOptions(residual_noise(samples.time, before - before.mean(axis=0)))
     else:
         options = PayloadOptions(
             empty.noise, offset=empty.offset, offset_deviation=empty.offset_deviation
