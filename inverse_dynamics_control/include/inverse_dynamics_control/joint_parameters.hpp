@@ -20,8 +20,11 @@ inline namespace v2 {
 
 /// One number per joint; a single number stands for all joints.
 ///
-/// @param name  of the parameter, for the text of errors.
-/// Throws inverse_dynamics_solver::InvalidParameterValueException: another number of numbers.
+/// @param name    of the parameter, for the text of errors.
+/// @param values  1 or n, in any unit.
+/// @param joints  n names.
+/// @return        n numbers.
+/// @throws inverse_dynamics_solver::InvalidParameterValueException: another number of values.
 OwnedVector jointNumbers(const std::string& name, const std::vector<double>& values,
                          const std::vector<std::string>& joints);
 
@@ -31,13 +34,15 @@ OwnedVector jointNumbers(const std::string& name, const std::vector<double>& val
 
 /// Limits of n joints; infinity where a description states none.
 struct DescribedLimits {
-  ReferenceLimits reference;
-  OwnedVector effort;  ///< n; N m (prismatic N)
+  ReferenceLimits reference;  ///< positions and velocities: rad, rad/s (prismatic m, m/s)
+  OwnedVector effort;         ///< n; N m (prismatic N)
 };
 
+/// Limits of joints from a robot description.
+///
 /// @param robot_description  text of a URDF; empty: there are no limits.
 /// @param joints             one that isn't in the description has no limits.
-/// Throws inverse_dynamics_solver::InvalidRobotDescriptionException: not a URDF.
+/// @throws inverse_dynamics_solver::InvalidRobotDescriptionException: not a URDF.
 DescribedLimits describedLimits(const std::string& robot_description,
                                 const std::vector<std::string>& joints);
 
