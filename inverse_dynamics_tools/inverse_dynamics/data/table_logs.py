@@ -52,12 +52,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.data.tables import Table
 
 _LARGEST_ANGLE = 100.0  # rad: 16 turns
-_ROW_PER_JOINT = {
-    "joint",
-    "joint_name",
-    "name",
-    "topic",
-}  # columns of tables with a row for each joint
+# Columns of tables with a row for each joint.
+_ROW_PER_JOINT = {"joint", "joint_name", "name", "topic"}
 _TURNED_BY = (
     'python -c "import pandas, sys; t = pandas.read_csv(sys.argv[1]).pivot(index=sys.argv[2], columns=sys.argv[3]); '
     "t.columns = map('.'.join, t.columns); t.to_csv('NEW.csv')\""
@@ -153,7 +149,7 @@ def read_motion(
     if part := matched.columns.get(TIME, ())[1:]:
         numbers[TIME] = times.whole_seconds(numbers[TIME], *part)
     if not matched.exact and _counts(numbers.get(POSITION, np.zeros(1))):
-        matched.units.setdefault(POSITION, "counts")
+        matched.units.setdefault(POSITION, "whole numbers beyond 100 (counts, deg, mm?)")
     numbers = form.scaled(numbers, matched.units, len(matched.joints), where)
     if form.rate is not None:
         numbers[TIME] = np.arange(len(rows))[:, None] / form.rate

@@ -112,9 +112,7 @@ class Contacts:
     thresholds: ContactThresholds
     contacts: tuple[Contact, ...]
     interruptions: tuple[tuple[float, float], ...] = ()  # from, to [s]: no estimate in between
-    blind: tuple[
-        str, ...
-    ] = ()  # joints whose thresholds exceed their effort limits: no contact shows
+    blind: tuple[str, ...] = ()  # joints whose thresholds exceed their effort limits
     quiet_part: tuple[float, float] | None = None  # from, to [s], if the thresholds are from there
     notes: tuple[str, ...] = ()
 

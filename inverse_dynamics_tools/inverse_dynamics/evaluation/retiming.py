@@ -49,10 +49,8 @@ if TYPE_CHECKING:
 _UNLIMITED = 1e6  # N m, rad/s: beyond every joint
 _OF_MOTORS = ("knee_velocity", "no_load_velocity")
 PER_JOINT = ("torque", "velocity", "acceleration", "jerk", *_OF_MOTORS)
-_ABOUT_ONE, _AIM = (
-    0.998,
-    0.999,
-)  # share of torque limits at which the compared acceleration is found
+_ABOUT_ONE = 0.998  # share of torque limits from which on the compared acceleration is good enough
+_AIM = 0.999  # the share that its search aims at
 _MOST_STEPS = 12  # of its search
 _WEIGHING_RATE = 250.0  # Hz, of samples for energies
 _SLOWEST = 0.05  # share of the fastest motion's velocities
@@ -83,9 +81,7 @@ class Retimed:
     speed_limit: Floats  # (K,) of the grid: ds/dt that limits allow for an instant
     energy: MotionEnergy
     by_acceleration: TimedPath | None  # the same path, one acceleration limit for all joints
-    acceleration: (
-        float  # rad/s^2, that limit: the greatest that keeps torques within theirs, and is used
-    )
+    acceleration: float  # rad/s^2, that limit: the greatest under which torques keep to theirs
     notes: tuple[str, ...] = ()
 
     @property
@@ -197,8 +193,9 @@ def retime(
     _check_positions(path, arm, robot)
     fastest = retime_path(arm.solver, path, limits, options)
     acceleration, by_acceleration = _by_acceleration(arm.solver, fastest, limits, options)
-    # with limits of jerk neither of them is the fastest of all
-    timed = min(fastest, by_acceleration or fastest, key=lambda one: one.duration)
+    timed = fastest
+    if len(limits.jerk) and by_acceleration:  # neither of them is the fastest of all
+        timed = min(fastest, by_acceleration, key=lambda one: one.duration)
     if weight > 0.0:
         timed = _weighted(arm.solver, timed, limits, options, weight)
     time = sample_times(timed.duration, rate)
