@@ -363,7 +363,10 @@ def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
             "t,topic,value\n0,/q[0],1\n",
             "expected a row for each time, got one for each topic; turn it: python -c",
         ),
-        ("t,q1,tau1\n0,2048,1\n0.1,2047,1\n", "position: expected a known unit, got whole numbers beyond 100"),
+        (
+            "t,q1,tau1\n0,2048,1\n0.1,2047,1\n",
+            "position: expected a known unit, got whole numbers beyond 100",
+        ),
         (
             "7,0,base,a,b,1,2,,3,4\n7,5,base,b,a,2,1,,4,3\n",
             ":2: expected the joints a, b in all messages, as in the first one, got b, a; record",
