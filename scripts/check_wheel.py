@@ -66,7 +66,7 @@ def faults_of_installation(out: Path) -> list[str]:
     """What is wrong with the installed package, in words."""
     faults = []
     ids = Path(sys.executable).with_name("ids")
-    manifest = (ROOT / "inverse_dynamics_tools/package.xml").read_text()
+    manifest = (ROOT / "python/package.xml").read_text()
     version = re.search("<version>(.*)</version>", manifest)
     told = subprocess.run([ids, "--version"], capture_output=True, text=True).stdout.split()
     if version is None or told != ["ids", version[1]]:

@@ -17,7 +17,7 @@ usage() { sed -n '4,/^$/s/^# \{0,1\}//p' "scripts/${0##*/}"; }
 case "${1:-}" in -h | --help) usage && exit ;; esac
 
 venv=$workspace/.venv
-requirements=inverse_dynamics_tools/requirements.txt
+requirements=python/requirements.txt
 
 # Debian's ament, colcon and pluginlib belong to Debian's own python3, whatever `python3` is first on PATH.
 system_python=/usr/bin/python3

@@ -94,7 +94,7 @@ def arm_of(name: str, wheels: Path) -> Arm:
     if name in SERIAL:
         return Arm(serial_urdf(name), root, tip)
     if name in OWN:
-        file = ROOT / "inverse_dynamics_robots" / "urdf" / path
+        file = ROOT / "core" / "inverse_dynamics_robots" / "urdf" / path
         return Arm(file.read_text(encoding="utf-8"), root, tip)
     pattern = PACKAGE.replace("-", "_").replace("==", "-") + "-*.whl"
     if not list(wheels.glob(pattern)):

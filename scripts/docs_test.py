@@ -63,7 +63,7 @@ def test_links_beyond_the_pages_lead_into_the_repository_or_are_text() -> None:
     linked = text.replace("../README.md#x", "https://example.org/r/blob/main/README.md")
     assert beyond_docs(text, "control.md", "https://example.org/r") == linked
     assert beyond_docs("[l](../../LICENSE)", "api/cpp.md") == "l"
-    header = "../../chain_dynamics/include/chain_dynamics/fast_model.hpp"
+    header = "../../core/chain_dynamics/include/chain_dynamics/fast_model.hpp"
     page = '<a href="../cpp/fast__model_8hpp.html">l</a>'  # of Doxygen
     assert beyond_docs(f"[l]({header})", "api/cpp.md", "https://example.org/r") == page
 

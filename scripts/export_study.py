@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.simulation.trajectory import Trajectory
 
 RATE = 500  # Hz
-MOTION = DOCS.parent / "inverse_dynamics_robots" / "trajectories" / "ur10.yaml"
+MOTION = DOCS.parent / "core" / "inverse_dynamics_robots" / "trajectories" / "ur10.yaml"
 SECONDS = 20.0  # of the recording, and of the other one that errors are of
 FREE = 0.5  # s that the model runs free from a true state
 ITERATIONS = 16  # of sysid, the last of which lower its error by 0.5 to 5 % each

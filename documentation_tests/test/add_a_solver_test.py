@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pages import REPOSITORY, blocks_of, page
 
-EXAMPLE = REPOSITORY / "inverse_dynamics_solver/examples/pendulum_inverse_dynamics_solver"
+EXAMPLE = REPOSITORY / "core/inverse_dynamics_solver/examples/pendulum_inverse_dynamics_solver"
 BLOCKS = blocks_of(page("docs/add_a_solver.md"))
 
 

@@ -11,9 +11,11 @@ from pathlib import Path
 import pytest
 from pages import REPOSITORY
 
-MANIFESTS = sorted(REPOSITORY.glob("*/package.xml"))
-MODELS = sorted(REPOSITORY.glob("inverse_dynamics_robots/models/*.yaml"))
-OWN = {path.parent.name for path in MANIFESTS}
+MANIFESTS = sorted(
+    file for depth in ("*", "*/*") for file in REPOSITORY.glob(f"{depth}/package.xml")
+)
+MODELS = sorted(REPOSITORY.glob("core/inverse_dynamics_robots/models/*.yaml"))
+OWN = {ElementTree.parse(path).getroot().findtext("name") for path in MANIFESTS}
 
 KEYS_OF_ROSDEP = {
     key

@@ -14,7 +14,7 @@ import yaml
 from pages import REPOSITORY
 
 BEGIN = "<!-- generated: documentation_tests/test/parameters_test.py -->\n"
-PACKAGES = sorted({path.parents[1] for path in REPOSITORY.glob("*/src/*_parameters.yaml")})
+PACKAGES = sorted({path.parents[1] for path in REPOSITORY.glob("*/*/src/*_parameters.yaml")})
 
 # Descriptions name the allowed strings themselves.
 RANGES = {

@@ -65,7 +65,7 @@ def test_the_controller_is_configured_as_the_simulation_is() -> None:
 
     (block,) = blocks_of(page("docs/tutorials/ros2_controller.md"), "yaml")
     shown = yaml.safe_load(block.code)
-    file = REPOSITORY / "inverse_dynamics_simulation/config/ur10.yaml"
+    file = REPOSITORY / "ros2/inverse_dynamics_simulation/config/ur10.yaml"
     assert _is_part_of(shown, yaml.safe_load(file.read_text(encoding="utf-8")))
 
 

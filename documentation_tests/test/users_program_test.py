@@ -15,7 +15,7 @@ import pytest
 from pages import REPOSITORY
 
 PROGRAM = Path(__file__).resolve().parent / "users_program"
-PENDULUM = REPOSITORY / "inverse_dynamics_solver/examples/pendulum_inverse_dynamics_solver"
+PENDULUM = REPOSITORY / "core/inverse_dynamics_solver/examples/pendulum_inverse_dynamics_solver"
 PREFIXES = [Path(prefix) for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep)]
 
 # What the processor must have for a program's flags (names of /proc/cpuinfo).

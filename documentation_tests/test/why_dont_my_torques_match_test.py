@@ -25,7 +25,7 @@ FITS = 0.1  # N m: beside the mistakes, all of them above 0.5, nothing
 def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Follow the page, in what stands for the root of the repository."""
     root = tmp_path_factory.mktemp("root")
-    for name in ("docs", "inverse_dynamics_robots"):
+    for name in ("docs", "core"):
         (root / name).symlink_to(REPOSITORY / name)
     for block in blocks_of(PAGE, "xml", "bash"):
         if block.language == "xml":

@@ -16,7 +16,7 @@ import pytest
 from pages import REPOSITORY, blocks_of, page
 
 PROJECT = REPOSITORY / "inverse_dynamics"
-WITHOUT_ROS = REPOSITORY / "inverse_dynamics_solver/without_ros"
+WITHOUT_ROS = REPOSITORY / "core/inverse_dynamics_solver/without_ros"
 ENVIRONMENT = {
     name: value
     for name, value in os.environ.items()
@@ -47,7 +47,8 @@ def workspace_packages() -> set[str]:
     """Names of the packages beside the project."""
     return {
         re.search("<name>(.*)</name>", file.read_text(encoding="utf-8"))[1]
-        for file in REPOSITORY.glob("*/package.xml")
+        for depth in ("*", "*/*")
+        for file in REPOSITORY.glob(f"{depth}/package.xml")
     }
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-REPOSITORY = Path(__file__).resolve().parents[2]
+REPOSITORY = Path(__file__).resolve().parents[3]
 
 # Headers that cross no boundary: compiled by the program that includes them, or of another plugin interface.
 WITHOUT = (
@@ -23,7 +23,7 @@ WITHOUT = (
 
 HEADERS = [
     path
-    for path in sorted(REPOSITORY.glob("*/include/**/*.hpp"))
+    for path in sorted(REPOSITORY.glob("*/*/include/**/*.hpp"))
     if not any(part in str(path.relative_to(REPOSITORY)) for part in WITHOUT)
     and "\nnamespace " in path.read_text(encoding="utf-8")
 ]

@@ -17,7 +17,7 @@ def robots_package() -> Path:
         share = Path(prefix) / "share/inverse_dynamics_robots"
         if prefix and share.is_dir():
             return share
-    return Path(__file__).resolve().parents[2] / "inverse_dynamics_robots"
+    return Path(__file__).resolve().parents[2] / "core" / "inverse_dynamics_robots"
 
 
 def urdf_of(name: str) -> str:

@@ -22,7 +22,7 @@ from inverse_dynamics.errors import ArgumentError, InvalidParameterError, Parame
 from inverse_dynamics.simulation import simulate
 
 ROOT = Path(__file__).resolve().parents[2]
-EXAMPLE = ROOT / "inverse_dynamics_solver/examples/pendulum_inverse_dynamics_solver"
+EXAMPLE = ROOT / "core/inverse_dynamics_solver/examples/pendulum_inverse_dynamics_solver"
 
 # An arm with a finger beside the chain, which weighs elsewhere where it is locked elsewhere.
 WITH_FINGER = robot(
