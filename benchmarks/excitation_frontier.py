@@ -17,16 +17,16 @@ import time
 
 import numpy as np
 
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.robots import load_robot
-from inverse_dynamics.simulation.collision import ContactChecker
-from inverse_dynamics.simulation.configuration import StatedSimulation
-from inverse_dynamics.simulation.excitation import (
+from inverse_dynamics.excitation.excitation import (
     ExcitationOptions,
     motion_gram,
     optimise_excitation,
 )
-from inverse_dynamics.simulation.information import CORRELATION, Unknowns
+from inverse_dynamics.excitation.information import CORRELATION, Unknowns
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.robots import load_robot
+from inverse_dynamics.simulation.collision import ContactChecker
+from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.model import SimulatedRobot
 from inverse_dynamics.simulation.trajectory import read_trajectory
 

@@ -27,8 +27,8 @@ from pathlib import Path
 import numpy as np
 
 from inverse_dynamics._core import JointStateWriter
-from inverse_dynamics.evaluation.evaluation import Arm
-from inverse_dynamics.robot.robots import load_robot
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.robots import load_robot
 
 ROBOT = "panda_real"
 RATE = 1000.0  # Hz

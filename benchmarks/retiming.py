@@ -27,8 +27,8 @@ from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retim
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.robots.robots import Robot
 
 TORQUE = np.array([87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0])
 VELOCITY = np.array([2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61])

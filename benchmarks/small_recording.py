@@ -19,7 +19,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from inverse_dynamics.results.demo import find_recordings
+from inverse_dynamics.demo.demo import find_recordings
 
 BARE = """\
 from matplotlib.figure import Figure

@@ -22,7 +22,7 @@ from inverse_dynamics import _core
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from inverse_dynamics.base.arrays import Floats, Integers
+    from inverse_dynamics.arrays import Floats, Integers
 
     Random = np.random.Generator
 

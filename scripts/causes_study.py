@@ -25,9 +25,9 @@ from known_mistakes import Mistake, real_recordings, recordings
 from studies import show, table
 
 from inverse_dynamics import evaluate
-from inverse_dynamics.data.public_recordings import data_directory
+from inverse_dynamics.diagnosis.compare import Cause
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.evaluation.causes.compare import Cause
+from inverse_dynamics.public_recordings.public_recordings import data_directory
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

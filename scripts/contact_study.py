@@ -12,12 +12,12 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from studies import ROBOTS, table
 
-from inverse_dynamics.data.public_recordings import data_directory
-from inverse_dynamics.evaluation.contacts import find_contacts
-from inverse_dynamics.evaluation.evaluation import Arm
+from inverse_dynamics.contact.contacts import find_contacts
+from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.identify import identify
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.robot.robots import load_robot
+from inverse_dynamics.public_recordings.public_recordings import data_directory
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.robots import load_robot
 
 RATES = (0.01, 0.1, 1.0, 10.0, 100.0)  # false alarms per hour
 DIRECTIONS = 2000

@@ -23,7 +23,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
 
 ROOT = Path(__file__).resolve().parent.parent
 GRAVITY = np.array([0.0, 0.0, -9.81])

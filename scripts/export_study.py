@@ -26,15 +26,15 @@ from mujoco import sysid
 from studies import DOCS, ROBOTS, show, table
 
 from inverse_dynamics import identify, load_robot
-from inverse_dynamics.data.public_recordings import data_directory
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.results.urdf_export import mjcf_text
+from inverse_dynamics.identification.files import write_identification
+from inverse_dynamics.identification.urdf_export import mjcf_text
+from inverse_dynamics.public_recordings.public_recordings import data_directory
 from inverse_dynamics.simulation import Sensors, simulate, write_run
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.result import Identification
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.robots.robots import Robot
     from inverse_dynamics.simulation import SimulatedRun
     from inverse_dynamics.simulation.trajectory import Trajectory
 

@@ -20,8 +20,8 @@ from payload_truth import STEP, Arm, trials
 from studies import ROBOTS, show, table
 
 from inverse_dynamics import identify
-from inverse_dynamics.data.public_recordings import data_directory
-from inverse_dynamics.report.tables import held_out_table
+from inverse_dynamics.identification.tables import held_out_table
+from inverse_dynamics.public_recordings.public_recordings import data_directory
 
 if TYPE_CHECKING:
     from inverse_dynamics.identification.result import Identification

@@ -22,14 +22,14 @@ import numpy as np
 from described_arms import ARMS, GRAVITY, Arm, arm_of
 
 from inverse_dynamics import read_joint_log
-from inverse_dynamics.robot.robots import robot_of_description
+from inverse_dynamics.robots.robots import robot_of_description
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.robots.robots import Robot
 
 Random = np.random.Generator
 Make = Callable[["Draft", Random], "Mistake"]

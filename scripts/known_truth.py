@@ -23,6 +23,7 @@ import numpy as np
 from inverse_dynamics import _core, evaluate, load_robot
 from inverse_dynamics.identification.blocks import blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of
+from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.identify import BLOCKS
 from inverse_dynamics.identification.knowledge import (
     _combinations,
@@ -31,20 +32,19 @@ from inverse_dynamics.identification.knowledge import (
     knowledge,
 )
 from inverse_dynamics.identification.result import identified_model, urdf_of
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.simulation import EffortNoise, Resolution, Sensors, simulate, write_run
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.identification.blocks import Block
     from inverse_dynamics.identification.cross_validation import Chosen
     from inverse_dynamics.identification.result import Identification
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.robots.robots import Robot
 
 # Mean over the joints of the RMSE on random states [N m], median of the seeds.
 MOST_ERROR = {"ur10": 0.38, "panda": 0.07}

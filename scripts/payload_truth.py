@@ -21,17 +21,17 @@ from inverse_dynamics import Solver, _core, evaluate
 from inverse_dynamics.identification.blocks import blocks_outside, together
 from inverse_dynamics.identification.cross_validation import choose
 from inverse_dynamics.identification.knowledge import knowledge
-from inverse_dynamics.identification.payload import Samples, fit_payload, samples_of, with_load
 from inverse_dynamics.identification.result import model_file_text, urdf_of
 from inverse_dynamics.identification.uncertainty import factor_of
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.robots import RIGID_BODY
+from inverse_dynamics.payload.payload import Samples, fit_payload, samples_of, with_load
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.robots import RIGID_BODY
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.identification.blocks import Block
     from inverse_dynamics.identification.result import Identification
 

@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.data.public_recordings import data_directory
+from inverse_dynamics.public_recordings.public_recordings import data_directory
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -25,18 +25,18 @@ import numpy as np
 from studies import show, table
 
 from inverse_dynamics import _core, evaluate, identify, load_robot
-from inverse_dynamics.data.public_recordings import data_directory
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.robots import robot_of_description
+from inverse_dynamics.identification.files import write_identification
+from inverse_dynamics.public_recordings.public_recordings import data_directory
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.robots import robot_of_description
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from inverse_dynamics._core import ArmFit, FastModel
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.evaluation.evaluation import Evaluation
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.robots.robots import Robot
 
 MOST_SAMPLES = 12_000  # that least squares take
 RANK = 1e-7  # of the greatest singular value

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.base.files import write_text_whole
 from inverse_dynamics.errors import OutputError
+from inverse_dynamics.outputs.files import write_text_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.figures.plots import save_figure
+from inverse_dynamics.show.plots import save_figure
 from inverse_dynamics_benchmarks.names import CHAINS, LIBRARIES, QUANTITIES, REAL, ROBOTS
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.base.ament import PackageNotFoundError, package_share
-from inverse_dynamics.base.wording import how_to_build, not_built
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.installation.ament import PackageNotFoundError, package_share
+from inverse_dynamics.wording import how_to_build, not_built
 from inverse_dynamics_benchmarks.measurement import Measurement, measurement
 
 if TYPE_CHECKING:

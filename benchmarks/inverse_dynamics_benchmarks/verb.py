@@ -8,12 +8,13 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.values import count, positive_number
+from inverse_dynamics.terminal.values import count, positive_number
 
 if TYPE_CHECKING:
-    from inverse_dynamics.verbs.options import Options
+    from inverse_dynamics.terminal.options import Options
     from inverse_dynamics_benchmarks import Measurement
 
+GROUP = "share"
 SUMMARY = "measure this machine beside KDL, Pinocchio and MuJoCo"
 DESCRIPTION = "Time this library, KDL, Pinocchio and MuJoCo on this machine."
 EPILOG = """\
@@ -62,8 +63,8 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.base.files import write_text_whole
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.outputs.files import write_text_whole
+    from inverse_dynamics.terminal.screen import Screen
     from inverse_dynamics_benchmarks import measure, page, read_measurement, write_measurement
     from inverse_dynamics_benchmarks.plot import check_figure_name, save_speed_figure
 
@@ -93,8 +94,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _check_outputs(arguments: argparse.Namespace) -> None:
-    from inverse_dynamics.base.files import check_output_file
     from inverse_dynamics.errors import OutputError
+    from inverse_dynamics.outputs.files import check_output_file
 
     others: dict[Path, str] = {}
     for option in ("--json", "--markdown", "--plot"):
@@ -130,7 +131,7 @@ def _check_measuring(arguments: argparse.Namespace) -> None:
 def _print(result: Measurement) -> None:
     from rich.markdown import Markdown
 
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.terminal.screen import Screen
     from inverse_dynamics_benchmarks import page
 
     # Numbers in full on a narrow screen too, if need be by scrolling.

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from inverse_dynamics.base.ament import PackageNotFoundError, package_share
+from inverse_dynamics.installation.ament import PackageNotFoundError, package_share
 from inverse_dynamics_benchmarks import measure, page, read_measurement, write_measurement
 from inverse_dynamics_benchmarks.measurement import measurement
 

@@ -16,9 +16,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from inverse_dynamics import read_evaluation
-from inverse_dynamics.figures.plots import COMPUTED, ERROR, MEASURED, STYLE
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.solvers import open_solver
+from inverse_dynamics.show.plots import COMPUTED, ERROR, MEASURED, STYLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable

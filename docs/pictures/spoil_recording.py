@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics import load_robot, read_joint_log, write_joint_logs
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.solvers import open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -33,7 +33,7 @@ def test_the_robot_is_shown(printed: tuple[Path, str]) -> None:
 
 def test_a_payload_is_added(printed: tuple[Path, str]) -> None:
     from inverse_dynamics import load_robot
-    from inverse_dynamics.robot.solvers import open_solver
+    from inverse_dynamics.robots.solvers import open_solver
 
     directory, _ = printed
     description = (directory / "my_arm.urdf").read_text()

@@ -12,7 +12,7 @@ import pytest
 from pages import blocks_of, page, run
 
 from inverse_dynamics import JointLog, Solver, write_joint_logs
-from inverse_dynamics.results.many_evaluations import COLUMNS
+from inverse_dynamics.evaluation.many_evaluations import COLUMNS
 
 PAGE = page("docs/many_recordings.md")
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `ids`: verbs, errors, exit codes.
 
-A verb is a module of inverse_dynamics.verbs with SUMMARY (its line in the list of verbs), EPILOG (examples,
-a paragraph each), perhaps DESCRIPTION, `declare(options)` and `run(arguments)`, which imports what is heavy. Its
-name stands in GROUPS, its line in docs/command_line.md. A package that is built on request brings its verb.
+A verb NAME is a module verb_NAME.py in the folder of its feature, with GROUP and SUMMARY (its place and line in the
+list of verbs), EPILOG (examples, a paragraph each), perhaps DESCRIPTION, `declare(options)` and `run(arguments)`,
+which imports what is heavy. Its line stands in docs/command_line.md. A package that is built on request brings its
+verb.
 Exit code 0: done; 2: something that the user can correct, named on stderr (without a verb: the help);
 3: some of several recordings failed, the others are done; 1: an unexpected error, with a report in a
 file; 128 + n: ended by signal n (141: the reader of the output has gone).
@@ -20,28 +21,23 @@ import sys
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.base.crash import crash_report
-from inverse_dynamics.base.extras import EXTRAS, missing
-from inverse_dynamics.base.help_text import HelpFormatter, filled, terminal_width, wrapped
-from inverse_dynamics.base.wording import did_you_mean, not_built
-from inverse_dynamics.base.wording import message as _message
 from inverse_dynamics.errors import PartialError, UserError
-from inverse_dynamics.verbs.options import Options
+from inverse_dynamics.installation.extras import EXTRAS, missing
+from inverse_dynamics.outputs.crash import crash_report
+from inverse_dynamics.terminal.help_text import HelpFormatter, filled, terminal_width, wrapped
+from inverse_dynamics.terminal.options import Options
+from inverse_dynamics.wording import did_you_mean, not_built
+from inverse_dynamics.wording import message as _message
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from types import FrameType
     from typing import NoReturn
 
-GROUPS = {
-    "look": ("demo", "data", "robots", "evaluate", "compare", "contact"),
-    "identify": ("excite", "identify", "payload"),
-    "plan": ("simulate", "torques", "retime"),
-    "share": ("report", "export", "completion"),
-}
-VERBS = tuple(verb for group in GROUPS.values() for verb in group)
+GROUPS = ("look", "identify", "plan", "share")
 
 # Packages that are built on request: their modules `verb` are verbs too, where they are built.
 BUILT_ON_REQUEST = {"bench": "inverse_dynamics_benchmarks"}
@@ -72,7 +68,7 @@ class _Version(argparse.Action):
     """--version: read when it is asked for, as that takes time."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
-        from inverse_dynamics.base.version import version
+        from inverse_dynamics.installation.version import version
 
         print(f"ids {version()}")
         parser.exit()
@@ -161,19 +157,29 @@ def make_parser() -> argparse.ArgumentParser:
     subparsers = parser.add_subparsers(
         prog="ids", metavar="VERB", required=True, help=argparse.SUPPRESS
     )
-    built = {v: package for v, package in BUILT_ON_REQUEST.items() if find_spec(package)}
+    modules = {verb: import_module(module) for verb, module in verb_modules().items()}
     rows = []
-    for group, verbs in GROUPS.items():
+    for group in GROUPS:
         title = group
-        for verb in (*verbs, *(built if group == "share" else ())):
-            module = import_module(
-                f"{built[verb]}.verb" if verb in built else f"inverse_dynamics.verbs.{verb}"
-            )
-            _add_verb(subparsers, verb, module)
-            rows.append(f"{title:<9} {verb:<10}  {module.SUMMARY}")
-            title = ""
+        for verb, module in modules.items():
+            if group == module.GROUP:
+                _add_verb(subparsers, verb, module)
+                rows.append(f"{title:<9} {verb:<10}  {module.SUMMARY}")
+                title = ""
     parser.description = "\n".join((parser.description or "", "", *rows))
     return parser
+
+
+def verb_modules() -> dict[str, str]:
+    """Names of modules by verb, in alphabetical order; of packages that are built on request, where they are."""
+    files = Path(__file__).parent.glob("*/verb_*.py")
+    own = {
+        f.stem.removeprefix("verb_"): f"inverse_dynamics.{f.parent.name}.{f.stem}" for f in files
+    }
+    built = {
+        verb: f"{package}.verb" for verb, package in BUILT_ON_REQUEST.items() if find_spec(package)
+    }
+    return dict(sorted((own | built).items()))
 
 
 def _add_help(parser: argparse.ArgumentParser, short: str) -> None:
@@ -218,7 +224,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(given: list[str]) -> int:
-    from inverse_dynamics.base.files import replaced, start_noting_outputs, written_before
+    from inverse_dynamics.outputs.files import replaced, start_noting_outputs, written_before
 
     start_noting_outputs()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # matrices are small: others would only wait
@@ -300,7 +306,7 @@ def _signals_out_of_imports() -> Iterator[None]:
 
 
 def _outcome() -> str:
-    from inverse_dynamics.base.files import outcome
+    from inverse_dynamics.outputs.files import outcome
 
     return outcome()
 

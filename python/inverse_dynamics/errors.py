@@ -4,7 +4,7 @@
 The command line prints the text and ends with exit code 2; a script catches `UserError`.
 """
 
-from inverse_dynamics.base.wording import message
+from inverse_dynamics.wording import message
 
 
 class UserError(Exception):

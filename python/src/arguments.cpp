@@ -23,7 +23,7 @@ struct Function {
 const Function& functionAt(PyObject* self) { return *reinterpret_cast<Function*>(self); }
 
 py::object inArguments(const char* function) {
-  return py::module_::import("inverse_dynamics.base.arguments").attr(function);
+  return py::module_::import("inverse_dynamics.arguments").attr(function);
 }
 
 py::str docOf(const Function& function) { return py::handle(function.bound).attr("__doc__"); }
@@ -39,7 +39,7 @@ bool refusesArguments() {
                     : text.rfind("Unable to cast Python instance", 0) == 0;
 }
 
-/// The exception for a call, made by inverse_dynamics.base.arguments from the function's signature.
+/// The exception for a call, made by inverse_dynamics.arguments from the function's signature.
 void raiseRefusal(const Function& function, PyObject* const* arguments, Py_ssize_t count,
                   PyObject* names) {
   py::list positional;

@@ -27,5 +27,5 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindIdentification(module);
   inverse_dynamics_tools::bindTiming(module);
   inverse_dynamics_tools::explainWrongCalls(module);
-  pybind11::module_::import("inverse_dynamics.base.wheels").attr("find_other_wheels")();
+  pybind11::module_::import("inverse_dynamics.installation.wheels").attr("find_other_wheels")();
 }

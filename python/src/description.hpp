@@ -75,7 +75,7 @@ struct type_caster<inverse_dynamics_tools::Description> {
     if (is_text) value.text = source.cast<std::string>();
     if (is_text && !inverse_dynamics_tools::namesDescription(value.text)) return true;
     const object path = module_::import("pathlib").attr("Path")(source);
-    const auto descriptions = module_::import("inverse_dynamics.robot.descriptions");
+    const auto descriptions = module_::import("inverse_dynamics.robots.descriptions");
     value.text = descriptions.attr("read_description")(path).cast<std::string>();
     return true;
   }

@@ -540,7 +540,7 @@ Robot robotOf(const SolverName& named, bool described) {
 
 std::string descriptionOf(const Robot& robot) {
   const auto read =
-      py::module_::import("inverse_dynamics.robot.descriptions").attr("read_description");
+      py::module_::import("inverse_dynamics.robots.descriptions").attr("read_description");
   return read(py::module_::import("pathlib").attr("Path")(textOf(robot.urdf))).cast<std::string>();
 }
 

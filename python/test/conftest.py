@@ -15,8 +15,8 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
 from inverse_dynamics import Identification, Solver, cli, identify, write_joint_logs
-from inverse_dynamics.base.ament import package_share
-from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.installation.ament import package_share
+from inverse_dynamics.recordings.joint_log import JointLog
 
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
@@ -164,7 +164,7 @@ def bag(tmp_path_factory: pytest.TempPathFactory, solver: Solver) -> Path:
 @pytest.fixture(autouse=True)
 def _no_progress_lines(monkeypatch) -> None:
     """Lines that tell the progress of long work depend on how busy the machine is."""
-    monkeypatch.setattr("inverse_dynamics.verbs.screen._FIRST_LINE", float("inf"))
+    monkeypatch.setattr("inverse_dynamics.terminal.screen._FIRST_LINE", float("inf"))
 
 
 @pytest.fixture

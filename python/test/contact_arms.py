@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.simulation.trajectory import Trajectory
 
 PERIOD = 1e-3  # s

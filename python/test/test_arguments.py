@@ -10,7 +10,7 @@ import pytest
 from conftest import UR10
 
 from inverse_dynamics import Solver, UserError, _core, evaluate
-from inverse_dynamics.base.arguments import checked, refused
+from inverse_dynamics.arguments import checked, refused
 from inverse_dynamics.contact import ContactDetector, EstimatorOptions
 from inverse_dynamics.control import Gains
 from inverse_dynamics.errors import ArgumentError, InvalidParameterError

@@ -12,15 +12,15 @@ from identified_arms import engine, identification
 
 from inverse_dynamics import Solver, write_joint_logs
 from inverse_dynamics._core import ArmUncertainty
-from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import InvalidParameterError, RobotError
 from inverse_dynamics.evaluation import bands
 from inverse_dynamics.identification.cross_validation import noise_in_motion
-from inverse_dynamics.identification.payload import estimate_payload
+from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.uncertainty import read_uncertainty, usual_level
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.robot.model_errors import model_errors_file
-from inverse_dynamics.robot.robots import RIGID_BODY
+from inverse_dynamics.payload.payload import estimate_payload
+from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.robots.model_errors import model_errors_file
+from inverse_dynamics.robots.robots import RIGID_BODY
 
 SIZE = 16 * len(JOINTS)  # unknowns of the law `step`
 

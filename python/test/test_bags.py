@@ -7,13 +7,13 @@ import pytest
 from conftest import STORE, joint_log, write_messages
 from rosbags.rosbag2 import Reader
 
-from inverse_dynamics.data.bags import (
+from inverse_dynamics.errors import BagError
+from inverse_dynamics.recordings.bags import (
     TopicSummary,
     read_joint_log,
     read_topics,
     write_joint_logs,
 )
-from inverse_dynamics.errors import BagError
 
 TOPIC = "/joint_states"
 STORAGES = pytest.mark.parametrize("storage", ["sqlite3", "mcap"])

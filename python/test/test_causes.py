@@ -21,18 +21,19 @@ from inverse_dynamics import (
     read_joint_log,
     write_joint_logs,
 )
-from inverse_dynamics.evaluation.causes.arm import arm_model
-from inverse_dynamics.evaluation.causes.compare import (
+from inverse_dynamics.diagnosis.arm import arm_model
+from inverse_dynamics.diagnosis.compare import (
     Cause,
     compare,
     meaning_of_efforts,
     residual_causes,
 )
-from inverse_dynamics.evaluation.causes.rival import PAGE
-from inverse_dynamics.evaluation.causes.samples import Samples, pieces_of
-from inverse_dynamics.identification.payload import PayloadError, _require_plausible
-from inverse_dynamics.robot.choices import EFFORT_MEANINGS
-from inverse_dynamics.robot.robots import robot_of_description
+from inverse_dynamics.diagnosis.rival import PAGE
+from inverse_dynamics.diagnosis.samples import Samples, pieces_of
+from inverse_dynamics.payload.payload import PayloadError, _require_plausible
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.choices import EFFORT_MEANINGS
+from inverse_dynamics.robots.robots import robot_of_description
 
 NOISE = 0.005  # of each joint's range
 GAINS = np.array([13.5841, 14.2959, 11.3716, 11.2408, 11.7681, 11.7682, 11.0])
@@ -65,7 +66,7 @@ def model_of(name: str, **options):
     root, tip = CHAINS[name]
     file = robots_package() / "urdf" / f"{name}.urdf"
     robot = replace(robot_of_description(file), root=root, tip=tip)
-    return arm_model(robot, solver_of(name), urdf_of(name), **options)
+    return arm_model(Arm(robot), **options)
 
 
 def torques_of(name: str, gravity=None, load=None, description: str = ""):

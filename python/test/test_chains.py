@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from inverse_dynamics import Solver, available_solvers, errors
-from inverse_dynamics.robot.chain_geometry import chain_geometry
+from inverse_dynamics.robots.chain_geometry import chain_geometry
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.urdf import chain_from_urdf
 

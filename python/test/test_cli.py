@@ -10,11 +10,11 @@ import pytest
 from conftest import RIGID_BODY, UR10, URDF, fails, joint_log, recording
 
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation
-from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.robot.robots import load_robot, robot_of_description
-from inverse_dynamics.verbs.screen import _ProgressLines, progress_bar
-from inverse_dynamics.verbs.tables import rounded
+from inverse_dynamics.recordings.bags import write_joint_logs
+from inverse_dynamics.robots.robots import load_robot, robot_of_description
+from inverse_dynamics.terminal.screen import _ProgressLines, progress_bar
+from inverse_dynamics.terminal.tables import rounded
 
 RAW = ("--accelerations", "backward-difference")
 NO_FIGURE = ("--figures", "none")
@@ -434,7 +434,7 @@ def test_without_a_sourced_workspace_the_command_names_the_remedy():
 
 
 def test_long_work_is_reported_where_standard_error_is_no_terminal(capsys, monkeypatch):
-    monkeypatch.setattr("inverse_dynamics.verbs.screen._FIRST_LINE", 10.0)
+    monkeypatch.setattr("inverse_dynamics.terminal.screen._FIRST_LINE", 10.0)
     seconds = iter([0.0, 5.0, 11.0, 12.0, 25.0, 60.0])
     lines = _ProgressLines(lambda: next(seconds))
     for done in (1, 2, 3, 4, 10):

@@ -15,9 +15,9 @@ from test_many_evaluations import NO_FIGURE, QUICK, RAW, ROBOT, bags, fifo_held_
 from test_workers import square
 
 from inverse_dynamics import evaluate_many
-from inverse_dynamics.base import cluster as clusters
-from inverse_dynamics.base.cluster import on_cluster
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.evaluation import cluster as clusters
+from inverse_dynamics.evaluation.cluster import on_cluster
 
 _ = bags  # a fixture
 

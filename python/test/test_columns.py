@@ -5,8 +5,8 @@ import re
 
 import pytest
 
-from inverse_dynamics.data.columns import match_columns
 from inverse_dynamics.errors import BagError
+from inverse_dynamics.recordings.columns import match_columns
 
 UR = (
     "shoulder_pan_joint",

@@ -7,8 +7,8 @@ from test_results import make_evaluation
 
 from inverse_dynamics import cli, write_evaluation
 from inverse_dynamics._core import Effort
+from inverse_dynamics.comparison.comparison import compare
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.evaluation.comparison import compare
 
 
 @pytest.fixture(scope="module")

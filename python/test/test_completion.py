@@ -36,7 +36,7 @@ def completed(tmp_path, monkeypatch):
 
 
 def test_verbs_options_values_robots_and_files_are_completed(completed):
-    assert set(cli.VERBS) <= set(completed("ids "))
+    assert set(cli.verb_modules()) <= set(completed("ids "))
     assert completed("ids ev") == ["evaluate"]
     assert completed("ids evaluate --ac") == ["--accelerations"]
     assert completed("ids evaluate --accelerations lo") == ["low-pass"]

@@ -25,13 +25,13 @@ from inverse_dynamics.contact import (
     WrenchStatus,
     contact_thresholds,
 )
+from inverse_dynamics.contact.contacts import find_contacts
+from inverse_dynamics.contact.verb_contact import none_found
 from inverse_dynamics.errors import EvaluationError, InvalidParameterError
-from inverse_dynamics.evaluation.contacts import find_contacts
-from inverse_dynamics.evaluation.evaluation import Arm
+from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.identify import identify
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.robot.robots import robot_of_description
-from inverse_dynamics.verbs.contact import none_found
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.robots import robot_of_description
 
 PERIOD = 1e-3
 PUSH = (25.0, 26.0, 5.0)  # from, to [s], N m

@@ -40,7 +40,7 @@ from inverse_dynamics.contact import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
 
 GAIN = 60.0  # 1/s
 SEEDS = pytest.mark.parametrize(

@@ -34,7 +34,7 @@ from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
 
 RATE = 1000
 PERIOD = 1 / RATE

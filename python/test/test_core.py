@@ -9,7 +9,7 @@ from conftest import FRANKA, KDL, PENDULUM, RIGID_BODY, UR10
 from scipy import signal
 
 from inverse_dynamics import Solver, UserError, _core, available_solvers, errors
-from inverse_dynamics.base.ament import package_share
+from inverse_dynamics.installation.ament import package_share
 
 # What shared reference values are reproduced to [rad, N m]; the C++ tests hold the same.
 TOLERANCE = 1e-10

@@ -8,8 +8,8 @@ import pytest
 
 from inverse_dynamics import FastModel, load_robot
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.dh_tables import guess_notes
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.dh_tables import guess_notes
 
 # Published by the makers: Universal Robots, "DH parameters", and Franka, "Robot and interface
 # specifications".

@@ -12,12 +12,12 @@ from conftest import fails
 
 from inverse_dynamics import _core, evaluate, identify, load_robot, write_joint_logs
 from inverse_dynamics.cli import main
-from inverse_dynamics.data.joint_log import JointLog
-from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.identification.drive_gains import identify_drive_gains
 from inverse_dynamics.identification.result import IdentificationError
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.verbs.values import payload
+from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.terminal.values import payload
 
 RATE, SECONDS = 125.0, 40.0  # Hz, s
 LOAD = payload("5,0.03,-0.02,0.12")

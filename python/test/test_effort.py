@@ -11,7 +11,7 @@ from conftest import RIGID_BODY, UR10, URDF, motion, recording
 from inverse_dynamics import Solver, evaluate, load_robot
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.evaluation import evaluation
-from inverse_dynamics.robot.choices import EFFORT_MEANINGS
+from inverse_dynamics.robots.choices import EFFORT_MEANINGS
 
 GAINS = (13.0, 14.0, 11.0, 10.0, 9.0, 8.0)
 

@@ -9,9 +9,6 @@ import pytest
 from conftest import JOINTS, RIGID_BODY, UR10, URDF, joint_log, motion, recording
 
 from inverse_dynamics import Solver, cli, evaluate, load_robot, read_recording
-from inverse_dynamics.base import extras
-from inverse_dynamics.data.bags import write_joint_logs
-from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import (
     BagError,
     EvaluationError,
@@ -19,8 +16,11 @@ from inverse_dynamics.errors import (
     RobotError,
 )
 from inverse_dynamics.evaluation import evaluation
-from inverse_dynamics.results.evaluations import evaluate_into, write_evaluation
-from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.evaluation.files import evaluate_into, write_evaluation
+from inverse_dynamics.installation import extras
+from inverse_dynamics.recordings.bags import write_joint_logs
+from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.robots.descriptions import read_description
 
 
 @pytest.fixture(scope="module")

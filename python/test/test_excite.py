@@ -18,11 +18,11 @@ from identified_arms import identification
 from simulation_arms import robots_package, two_links
 
 from inverse_dynamics.cli import main
-from inverse_dynamics.results.excitations import LEAD_IN, excite, message_text
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.robot.robots import load_robot, robot_of_description
+from inverse_dynamics.excitation.excitation import ExcitationOptions
+from inverse_dynamics.excitation.excite import LEAD_IN, excite, message_text
+from inverse_dynamics.identification.files import write_identification
+from inverse_dynamics.robots.robots import load_robot, robot_of_description
 from inverse_dynamics.simulation import excitation, simulate, write_run
-from inverse_dynamics.simulation.excitation import ExcitationOptions
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory, read_trajectory
 
 

@@ -11,10 +11,10 @@ from test_results import make_evaluation
 
 from inverse_dynamics import Solver, cli, evaluate, write_evaluation
 from inverse_dynamics._core import Effort
-from inverse_dynamics.data.bags import write_joint_logs
-from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.results.exports import export_series, series_columns
+from inverse_dynamics.evaluation.exports import export_series, series_columns
+from inverse_dynamics.recordings.bags import write_joint_logs
+from inverse_dynamics.recordings.joint_log import JointLog
 
 
 @pytest.fixture(scope="module")

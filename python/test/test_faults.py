@@ -16,8 +16,8 @@ from conftest import URDF, fails
 from test_results import make_evaluation
 
 from inverse_dynamics import read_topics, write_evaluation
-from inverse_dynamics.results.evaluations import CONTENTS
-from inverse_dynamics.verbs import robots
+from inverse_dynamics.evaluation.files import CONTENTS
+from inverse_dynamics.robots import verb_robots as robots
 
 RAW = ("--accelerations", "backward-difference")
 IDS = [sys.executable, "-c", "import sys; from inverse_dynamics.cli import main; sys.exit(main())"]

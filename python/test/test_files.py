@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from inverse_dynamics.base.files import (
+from inverse_dynamics.errors import OutputError
+from inverse_dynamics.outputs.files import (
     Contents,
     check_output_directory,
     check_output_file,
@@ -15,7 +16,6 @@ from inverse_dynamics.base.files import (
     write_text_whole,
     written_whole,
 )
-from inverse_dynamics.errors import OutputError
 
 MARK = "result.json"
 RESULT = Contents(MARK, (MARK, "of_old", "bag/{name}.db3", "plot.*"), added=("series.csv",))
@@ -303,7 +303,7 @@ def test_names_that_no_text_can_hold_are_refused(tmp_path, name):
 CHILD = """
 import os, sys, signal
 from pathlib import Path
-from inverse_dynamics.base.files import Contents, written_whole
+from inverse_dynamics.outputs.files import Contents, written_whole
 with written_whole(Path(sys.argv[1]), contents=Contents("result.json", ("result.json",)), overwrite=True) as d:
     (d / "result.json").write_text("of the child")
     print("at work", flush=True)

@@ -14,7 +14,7 @@ import pytest
 from conftest import FRANKA, KDL, PINOCCHIO, RIGID_BODY, UR10
 
 from inverse_dynamics import available_solvers
-from inverse_dynamics.base.ament import package_share
+from inverse_dynamics.installation.ament import package_share
 
 ROBOTS = package_share("inverse_dynamics_robots")
 URDF = (ROBOTS / "urdf" / "ur10.urdf").read_text()

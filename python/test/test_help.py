@@ -9,10 +9,10 @@ import sys
 import pytest
 
 from inverse_dynamics import cli
-from inverse_dynamics.base.help_text import wrapped
+from inverse_dynamics.terminal.help_text import wrapped
 
 
-@pytest.mark.parametrize("verb", [(), *((verb,) for verb in cli.VERBS)])
+@pytest.mark.parametrize("verb", [(), *((verb,) for verb in cli.verb_modules())])
 def test_help_has_an_example_and_fits_the_terminal(ids, monkeypatch, verb):
     monkeypatch.setenv("COLUMNS", "80")
     code, out, _ = ids(*verb, "--help")
@@ -21,7 +21,7 @@ def test_help_has_an_example_and_fits_the_terminal(ids, monkeypatch, verb):
     assert [line for line in out.splitlines() if len(line) > 80] == []
 
 
-@pytest.mark.parametrize("verb", [(), *((verb,) for verb in cli.VERBS)])
+@pytest.mark.parametrize("verb", [(), *((verb,) for verb in cli.verb_modules())])
 def test_short_help_fits_one_screen(ids, monkeypatch, verb):
     monkeypatch.setenv("COLUMNS", "80")
     code, out, _ = ids(*verb, "-h")

@@ -16,8 +16,8 @@ from conftest import RIGID_BODY, joint_state, write_messages
 from simulation_arms import pendulum, write_robot
 
 from inverse_dynamics import Robot, evaluate, load_robot, write_joint_logs
-from inverse_dynamics.data.bags import read_joint_log
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.recordings.bags import read_joint_log
 
 SAMPLES = 300
 NAMES = ["swing"]

@@ -105,9 +105,9 @@ SCRIPT = """
 import json, math, resource, sys
 resource.setrlimit(resource.RLIMIT_AS, (6 * 2**30, 6 * 2**30))
 from pathlib import Path
-from inverse_dynamics.robot.descriptions import effort_limits
+from inverse_dynamics.robots.descriptions import effort_limits
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.figures.scene import scene_of
+from inverse_dynamics.show.scene import scene_of
 from inverse_dynamics.simulation.model import SimulatedRobot
 
 file, names = Path("arm.urdf"), ("swing",)

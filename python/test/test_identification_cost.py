@@ -8,7 +8,7 @@ import pytest
 
 import inverse_dynamics as ids
 from inverse_dynamics import _core
-from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robots.descriptions import read_description
 
 clarabel = pytest.importorskip("clarabel", reason="the judge, clarabel, isn't installed")
 sparse = pytest.importorskip("scipy.sparse")

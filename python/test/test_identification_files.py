@@ -15,19 +15,20 @@ from identified_arms import arm, identification, predicted_torques, simulated_to
 from test_report import data_of
 
 from inverse_dynamics import FastModel, Solver, evaluate, write_joint_logs
-from inverse_dynamics.base.plain import plain
-from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import OutputError, RobotError, SolverError
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
+from inverse_dynamics.identification import files as identifications
+from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.hold_out import hold_out
 from inverse_dynamics.identification.refusals import check_result
 from inverse_dynamics.identification.result import IdentificationError, model_file_text
-from inverse_dynamics.results import identifications, robot_files
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.results.universal_robots import friction_request
-from inverse_dynamics.robot.chain_geometry import chain_geometry
-from inverse_dynamics.robot.link_parameters import turned
-from inverse_dynamics.robot.robots import RIGID_BODY, Robot
+from inverse_dynamics.identification.universal_robots import friction_request
+from inverse_dynamics.outputs.plain import plain
+from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.robots import robot_files
+from inverse_dynamics.robots.chain_geometry import chain_geometry
+from inverse_dynamics.robots.link_parameters import turned
+from inverse_dynamics.robots.robots import RIGID_BODY, Robot
 
 
 @pytest.fixture(scope="module")

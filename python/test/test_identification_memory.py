@@ -16,7 +16,7 @@ import resource, sys
 import numpy as np
 import inverse_dynamics as ids
 from inverse_dynamics import _core
-from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robots.descriptions import read_description
 
 def peak():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

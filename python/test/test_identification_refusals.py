@@ -13,12 +13,12 @@ from conftest import JOINTS, fails, motion
 from identified_arms import identification, simulated_torques
 
 from inverse_dynamics import Solver, evaluate, load_robot, write_joint_logs
-from inverse_dynamics.data.joint_log import JointLog
-from inverse_dynamics.evaluation.causes.rival import PAGE
+from inverse_dynamics.diagnosis.rival import PAGE
 from inverse_dynamics.identification.findings import findings_of_errors
 from inverse_dynamics.identification.identify import identify
 from inverse_dynamics.identification.refusals import check_recordings, check_result
 from inverse_dynamics.identification.result import IdentificationError
+from inverse_dynamics.recordings.joint_log import JointLog
 
 ROBOT = "ur10_simulated"
 RATE = 250  # Hz, of motion()

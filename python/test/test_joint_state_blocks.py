@@ -7,9 +7,9 @@ from conftest import JOINT_STATE, STORE, joint_state
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 
 from inverse_dynamics import write_joint_logs
-from inverse_dynamics.data.bags import open_recording
-from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import BagError
+from inverse_dynamics.recordings.bags import open_recording
+from inverse_dynamics.recordings.joint_log import JointLog
 
 STORAGES = pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
 

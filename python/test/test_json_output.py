@@ -13,8 +13,8 @@ from conftest import RIGID_BODY, fails
 from simulation_arms import pendulum, two_links, write_robot
 
 from inverse_dynamics import cli
-from inverse_dynamics.simulation import excitation
-from inverse_dynamics.simulation.excitation import ExcitationOptions
+from inverse_dynamics.excitation import excitation
+from inverse_dynamics.excitation.excitation import ExcitationOptions
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "command_line.md"
 DOCUMENTED = dict(
@@ -128,5 +128,5 @@ def test_simulate_excite_and_torques(found, ids, tmp_path, monkeypatch):
 
 def test_the_page_lists_the_verbs_that_have_the_option(ids):
     verbs = {key.partition(" ")[0].partition("`")[0] for key in DOCUMENTED}
-    having = {verb for verb in cli.VERBS if "--json" in ids(verb, "--help")[1]}
+    having = {verb for verb in cli.verb_modules() if "--json" in ids(verb, "--help")[1]}
     assert verbs == having

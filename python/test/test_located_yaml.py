@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from inverse_dynamics.base.located_yaml import Value, read_mapping
 from inverse_dynamics.errors import RobotError
+from inverse_dynamics.robots.located_yaml import Value, read_mapping
 
 
 def value(directory: Path, text: str) -> Value:

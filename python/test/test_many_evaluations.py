@@ -17,10 +17,11 @@ import pytest
 from conftest import RIGID_BODY, URDF, fails, recording
 
 from inverse_dynamics import Solver, evaluate, evaluate_many, write_joint_logs
-from inverse_dynamics.base.workers import outcome_of
 from inverse_dynamics.errors import ArgumentError, BagError, OutputError, UserError
-from inverse_dynamics.results import exports, many_evaluations
-from inverse_dynamics.results.many_evaluations import COLUMNS
+from inverse_dynamics.evaluation import many_evaluations
+from inverse_dynamics.evaluation.many_evaluations import COLUMNS
+from inverse_dynamics.evaluation.workers import outcome_of
+from inverse_dynamics.export import exports
 
 ROBOT = ("--robot", "ur10_simulated")
 RAW = ("--accelerations", "backward-difference")

@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from inverse_dynamics.figures import palette
+from inverse_dynamics.show import palette
 
 # Linear RGB as seen by protanopes, deuteranopes and tritanopes [Machado, Oliveira, Fernandes 2009, table 1].
 SIGHT = {

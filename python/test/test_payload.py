@@ -12,7 +12,7 @@ from simulation_arms import joint, link, robot
 from test_solver_parameters import efforts, planned, write
 
 from inverse_dynamics import Solver, errors
-from inverse_dynamics.verbs.values import payload
+from inverse_dynamics.terminal.values import payload
 
 # One joint about y; the tip is 1 m out along x.
 ARM = robot(

@@ -23,7 +23,8 @@ from inverse_dynamics._core import (
     residual_noise,
 )
 from inverse_dynamics.errors import InvalidParameterError, OutputError
-from inverse_dynamics.identification.payload import (
+from inverse_dynamics.payload.files import check_payload_output, payload_files, write_payload
+from inverse_dynamics.payload.payload import (
     PayloadError,
     Samples,
     _require_own_tip,
@@ -32,11 +33,10 @@ from inverse_dynamics.identification.payload import (
     fit_payload,
     with_load,
 )
-from inverse_dynamics.results.payload import check_payload_output, payload_files, write_payload
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.robots import robot_of_description
-from inverse_dynamics.robot.solvers import open_solver
-from inverse_dynamics.verbs.values import payload as option
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.robots import robot_of_description
+from inverse_dynamics.robots.solvers import open_solver
+from inverse_dynamics.terminal.values import payload as option
 
 JOINTS = tuple(f"fer_joint{j + 1}" for j in range(7))
 LOAD = {

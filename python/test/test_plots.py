@@ -8,9 +8,9 @@ from test_results import make_evaluation
 
 from inverse_dynamics import save_torque_figure, torque_figure
 from inverse_dynamics._core import Accelerations
-from inverse_dynamics.evaluation.comparison import compare
-from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.plots import comparison_figure
+from inverse_dynamics.comparison.comparison import compare
+from inverse_dynamics.comparison.figure import comparison_figure
+from inverse_dynamics.show import palette
 
 
 def texts(figure):

@@ -9,15 +9,15 @@ import pytest
 
 from inverse_dynamics._core import ArmFitter
 from inverse_dynamics.cli import make_parser
-from inverse_dynamics.data.bags import write_joint_logs
-from inverse_dynamics.data.joint_log import JointLog
-from inverse_dynamics.data.recordings import position_ranges
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.evaluation.posture import posture_of
-from inverse_dynamics.identification.baselines import solver_of
-from inverse_dynamics.robot.descriptions import carried_joints
-from inverse_dynamics.robot.robots import robot_of_description, with_changes
-from inverse_dynamics.verbs import identify as identify_verb
+from inverse_dynamics.identification import verb_identify as identify_verb
+from inverse_dynamics.recordings.bags import write_joint_logs
+from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.recordings.recordings import position_ranges
+from inverse_dynamics.robots.descriptions import carried_joints
+from inverse_dynamics.robots.robots import robot_of_description, with_changes
+from inverse_dynamics.robots.solvers import solver_of
 
 JOINTS = ("waist", "right", "left", "grip")
 CHAIN = ("waist", "right")

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from inverse_dynamics import cli
-from inverse_dynamics.data import public_recordings
+from inverse_dynamics.demo.demo import find_recordings
 from inverse_dynamics.errors import RecordingsError, UserError
-from inverse_dynamics.results.demo import find_recordings
+from inverse_dynamics.public_recordings import public_recordings
 
 UR10 = "ur10_exciting_trajectory"
 

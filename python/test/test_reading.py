@@ -3,8 +3,8 @@
 
 import pytest
 
-from inverse_dynamics.base import reading
 from inverse_dynamics.errors import RobotError
+from inverse_dynamics.robots import reading
 
 
 def test_a_file_up_to_the_limit_is_read_and_a_larger_one_refused(tmp_path, monkeypatch):

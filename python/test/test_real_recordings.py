@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from inverse_dynamics import evaluate, load_robot, read_joint_log, write_joint_logs
-from inverse_dynamics.robot.choices import EFFORT_MEANINGS
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.robots.choices import EFFORT_MEANINGS
+from inverse_dynamics.robots.solvers import open_solver
 
 BACKWARD_DIFFERENCE = {
     "ur10": "4.257 4.710 1.772 0.756 0.748 1.317",

@@ -7,8 +7,8 @@ import pytest
 from test_report import browser
 from test_results import make_evaluation
 
+from inverse_dynamics.evaluation.page_of_many import render_recordings_page
 from inverse_dynamics.evaluation.summary import summary_of
-from inverse_dynamics.report.recordings import render_recordings_page
 
 
 def summary(name, factor=1.0, **changes):

@@ -12,8 +12,8 @@ import sys
 
 import pytest
 
-from inverse_dynamics.base import replacement
 from inverse_dynamics.errors import OutputError
+from inverse_dynamics.outputs import replacement
 
 # For each signal and way to write: writes a result again and again, with the signal before (even) or after
 # (odd) the k-th system call that changes the file system, until no step is left; a line of JSON for each.
@@ -21,9 +21,9 @@ PROGRAM = """
 import json, os, shutil, signal, sys
 from pathlib import Path
 from inverse_dynamics import cli
-from inverse_dynamics.base import files
-from inverse_dynamics.base import replacement
-from inverse_dynamics.verbs import robots
+from inverse_dynamics.outputs import files
+from inverse_dynamics.outputs import replacement
+from inverse_dynamics.robots import verb_robots as robots
 
 RESULT = files.Contents("mark", ("mark", "data"))
 target = Path("result")

@@ -16,16 +16,17 @@ from test_table_logs import table_of, write_table
 
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation, write_evaluation
 from inverse_dynamics._core import Effort, Verdict
+from inverse_dynamics.comparison.comparison import compare
+from inverse_dynamics.comparison.page import report_comparison
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.evaluation.comparison import compare
-from inverse_dynamics.report import report_comparison, report_run
-from inverse_dynamics.report.page import (
+from inverse_dynamics.evaluation.page import report_run
+from inverse_dynamics.show.page import (
     MAX_SAMPLES,
     Band,
     ReportSummary,
     render_page,
 )
-from inverse_dynamics.report.tables import ReportTable
+from inverse_dynamics.show.tables import ReportTable
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 DRIVER = shutil.which("chromedriver")
@@ -535,12 +536,12 @@ def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, cap
 
 
 def test_demo_that_fails_leaves_nothing(tmp_path, monkeypatch):
-    from inverse_dynamics.results import demo
+    from inverse_dynamics.demo import demo
 
     def fails(*arguments, **options):
         raise UserError("no page today")
 
-    monkeypatch.setattr("inverse_dynamics.report.write_page", fails)
+    monkeypatch.setattr("inverse_dynamics.show.page.write_page", fails)
     with pytest.raises(UserError, match="no page today"):
         demo.run_demo(tmp_path / "demo", quick=True)
     assert list(tmp_path.iterdir()) == []

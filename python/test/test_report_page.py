@@ -12,17 +12,17 @@ from test_recordings_page import summary
 from test_report import browser, child, play_slowly, press, time_of
 
 from inverse_dynamics.evaluation.evaluation import joint_errors
-from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.scene import scene_of
-from inverse_dynamics.report.page import (
+from inverse_dynamics.evaluation.page_of_many import render_recordings_page
+from inverse_dynamics.robots.robots import load_robot
+from inverse_dynamics.show import palette
+from inverse_dynamics.show.page import (
     Band,
     ReportRun,
     ReportSummary,
     render_page,
 )
-from inverse_dynamics.report.recordings import render_recordings_page
-from inverse_dynamics.report.tables import ReportTable, aligned, joint_table
-from inverse_dynamics.robot.robots import load_robot
+from inverse_dynamics.show.scene import scene_of
+from inverse_dynamics.show.tables import ReportTable, aligned, joint_table
 
 SCREENS = [(390, "light"), (390, "dark"), (1920, "dark"), (1300, "light")]
 

@@ -13,7 +13,7 @@ from inverse_dynamics._core import Accelerations, Effort, Verdict
 from inverse_dynamics.errors import OutputError, UserError
 from inverse_dynamics.evaluation.accelerations import Samples
 from inverse_dynamics.evaluation.evaluation import Evaluation, joint_errors
-from inverse_dynamics.robot.robots import Robot
+from inverse_dynamics.robots.robots import Robot
 
 FILES = {
     "bag",
@@ -159,7 +159,7 @@ def test_the_output_recording_has_the_storage_of_the_input_or_the_one_given(
 
 
 def test_nothing_is_written_if_the_last_file_fails(tmp_path, evaluation, monkeypatch):
-    from inverse_dynamics.figures import plots
+    from inverse_dynamics.show import plots
 
     def fail(*_, **__):
         raise OSError(28, "No space left on device")
@@ -216,11 +216,11 @@ def paths_of(data, path=()):
 
 def use(directory, *, page=True):
     """What report, compare and export do with a result. page: the slow part too."""
-    from inverse_dynamics.evaluation.comparison import compare
-    from inverse_dynamics.report import report_run
-    from inverse_dynamics.report.page import render_page
-    from inverse_dynamics.report.tables import evaluation_table
-    from inverse_dynamics.results.exports import series_columns
+    from inverse_dynamics.comparison.comparison import compare
+    from inverse_dynamics.evaluation.exports import series_columns
+    from inverse_dynamics.evaluation.page import report_run
+    from inverse_dynamics.evaluation.tables import evaluation_table
+    from inverse_dynamics.show.page import render_page
 
     read = read_evaluation(directory)
     evaluation_table(read)

@@ -13,11 +13,11 @@ from test_report import browser, child, complaints, time_of, wait_until
 from inverse_dynamics import cli, load_robot, retime, trajectory_torques
 from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retime_path
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
-from inverse_dynamics.evaluation.retiming import described_limits, sample_times, torque_limit
-from inverse_dynamics.report.retimed import render_retimed_page, spans
-from inverse_dynamics.robot.robots import with_changes
+from inverse_dynamics.retiming.page import render_retimed_page, spans
+from inverse_dynamics.retiming.retiming import described_limits, sample_times, torque_limit
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.robots import with_changes
 
 WAYPOINTS = np.array(
     [

@@ -19,17 +19,17 @@ from simulation_arms import robots_package
 from inverse_dynamics import load_robot, retime
 from inverse_dynamics._core import MotionLimits, RetimeOptions
 from inverse_dynamics.control import ComputedTorque, Gains, LawOptions, Status, damping_for
-from inverse_dynamics.evaluation.evaluation import Arm
-from inverse_dynamics.evaluation.retiming import described_limits
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.robot.robots import with_changes
+from inverse_dynamics.identification.files import write_identification
+from inverse_dynamics.retiming.retiming import described_limits
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.robots import with_changes
 from inverse_dynamics.simulation.model import Payload
 from inverse_dynamics.simulation.modelled import description_of, simulated_robot
 from inverse_dynamics.simulation.physics import drive
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.robots.robots import Robot
 
 RATE = 1000
 SHARE = 0.98

@@ -8,9 +8,9 @@ import pytest
 from conftest import damaged
 
 from inverse_dynamics import cli
-from inverse_dynamics.base.ament import PackageNotFoundError
 from inverse_dynamics.errors import ArgumentError, RobotError
-from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot, robot_names, with_changes
+from inverse_dynamics.installation.ament import PackageNotFoundError
+from inverse_dynamics.robots.robots import RIGID_BODY, Robot, load_robot, robot_names, with_changes
 
 COMPLETE = """\
 schema: 1
@@ -296,7 +296,7 @@ def test_fields_of_a_robot_are_checked(field: dict, text: str) -> None:
 
 
 def test_a_new_robot_is_a_file_that_reads_back_as_it_was_stated(tmp_path):
-    from inverse_dynamics.results.robot_files import write_robot
+    from inverse_dynamics.robots.robot_files import write_robot
 
     stated = replace(
         load_robot("ur10_simulated"),

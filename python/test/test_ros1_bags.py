@@ -8,8 +8,8 @@ import pytest
 from conftest import joint_state, write_messages
 
 from inverse_dynamics import read_recording
-from inverse_dynamics.data.log_format import LogFormat
 from inverse_dynamics.errors import BagError
+from inverse_dynamics.recordings.log_format import LogFormat
 
 rosbag1 = pytest.importorskip("rosbags.rosbag1")
 typesys = pytest.importorskip("rosbags.typesys")

@@ -7,18 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from inverse_dynamics.base import ament
-from inverse_dynamics.base.extras import EXTRAS, how_to_install
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.figures import scene as scenes
-from inverse_dynamics.figures.meshes import (
+from inverse_dynamics.installation import ament
+from inverse_dynamics.installation.extras import EXTRAS, how_to_install
+from inverse_dynamics.show import scene as scenes
+from inverse_dynamics.show.meshes import (
     MeshError,
     MeshPart,
     find_mesh,
     read_mesh,
     simplified,
 )
-from inverse_dynamics.figures.scene import (
+from inverse_dynamics.show.scene import (
     MOST_TRIANGLES,
     encoded_mesh,
     read_scene,
@@ -114,7 +114,7 @@ def test_a_mesh_that_is_drawn_twice_is_read_once(tmp_path, monkeypatch):
 
 
 def test_without_the_reader_the_note_says_how_to_get_it(tmp_path, monkeypatch):
-    monkeypatch.setattr("inverse_dynamics.base.extras.is_installed", lambda module: False)
+    monkeypatch.setattr("inverse_dynamics.installation.extras.is_installed", lambda module: False)
     write_stl(tmp_path / "upper.stl", sphere(4))
     file = tmp_path / "arm.urdf"
     file.write_text(ARM.format(base="", upper=mesh("upper.stl")))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-from inverse_dynamics.data.several_recordings import named_recordings
 from inverse_dynamics.errors import BagError
+from inverse_dynamics.recordings.several_recordings import named_recordings
 
 
 def make(root, *recordings):

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from inverse_dynamics.evaluation.evaluation import evaluate
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.robots import load_robot
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.robots import load_robot
+from inverse_dynamics.robots.solvers import open_solver
 from inverse_dynamics.simulation import MOUNTS, simulate, write_run
 
 ROBOTS = ("ur10_simulated", "panda_simulated")

@@ -9,9 +9,7 @@ import numpy as np
 import pytest
 from simulation_arms import pendulum, robots_package, simulated, two_links
 
-from inverse_dynamics.simulation.collision import ContactChecker
-from inverse_dynamics.simulation.errors import SimulationError
-from inverse_dynamics.simulation.excitation import (
+from inverse_dynamics.excitation.excitation import (
     Excitation,
     ExcitationOptions,
     condition_of,
@@ -19,6 +17,8 @@ from inverse_dynamics.simulation.excitation import (
     motion_gram,
     optimise_excitation,
 )
+from inverse_dynamics.simulation.collision import ContactChecker
+from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.model import Payload, SimulatedRobot
 from inverse_dynamics.simulation.trajectory import FourierTrajectory, read_trajectory

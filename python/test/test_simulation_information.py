@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 from simulation_arms import simulated, two_links
 
-from inverse_dynamics.robot.link_parameters import turned
-from inverse_dynamics.simulation import excitation as search
-from inverse_dynamics.simulation.collision import ContactChecker
-from inverse_dynamics.simulation.excitation import ExcitationOptions
-from inverse_dynamics.simulation.excitation_motion import MotionFamily
-from inverse_dynamics.simulation.information import (
+from inverse_dynamics.excitation import excitation as search
+from inverse_dynamics.excitation.excitation import ExcitationOptions
+from inverse_dynamics.excitation.excitation_motion import MotionFamily
+from inverse_dynamics.excitation.information import (
     CORRELATION,
     OWN,
     STEP_WIDTH,
@@ -22,6 +20,8 @@ from inverse_dynamics.simulation.information import (
     _prior_scale,
     _pseudo_inertia,
 )
+from inverse_dynamics.robots.link_parameters import turned
+from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.model import SimulatedRobot
 
 

@@ -14,9 +14,9 @@ from identified_arms import arm, identification
 from simulation_arms import pendulum, robots_package, write_robot
 
 from inverse_dynamics import Solver, load_robot
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.robot.robots import Robot
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.identification.files import write_identification
+from inverse_dynamics.robots.robots import Robot
+from inverse_dynamics.robots.solvers import open_solver
 from inverse_dynamics.simulation import Payload, SimulationError, simulate
 from inverse_dynamics.simulation.modelled import ModelFriction
 from inverse_dynamics.simulation.trajectory import read_trajectory

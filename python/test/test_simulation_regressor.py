@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from simulation_arms import joint, link, robot, simulated
 
-from inverse_dynamics.simulation.information import base_count, condition_number, engine_of
+from inverse_dynamics.excitation.information import base_count, condition_number, engine_of
 from inverse_dynamics.simulation.model import Payload, SimulatedRobot
 
 MIXED = robot(

@@ -12,9 +12,9 @@ import pytest
 import yaml
 from simulation_arms import CHAINS, pendulum, robots_package, two_links, write_robot
 
-from inverse_dynamics.data.bags import read_joint_log
 from inverse_dynamics.errors import OutputError, RobotError, UserError
-from inverse_dynamics.robot.robots import Robot, load_robot
+from inverse_dynamics.recordings.bags import read_joint_log
+from inverse_dynamics.robots.robots import Robot, load_robot
 from inverse_dynamics.simulation import (
     Payload,
     Resolution,

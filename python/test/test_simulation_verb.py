@@ -13,9 +13,9 @@ import yaml
 from simulation_arms import pendulum, two_links, write_robot
 
 from inverse_dynamics.cli import main
-from inverse_dynamics.data.bags import read_joint_log
+from inverse_dynamics.excitation.excitation import ExcitationOptions
+from inverse_dynamics.recordings.bags import read_joint_log
 from inverse_dynamics.simulation import run as run_module
-from inverse_dynamics.simulation.excitation import ExcitationOptions
 
 TRAJECTORY = """\
 schema: 1

@@ -10,7 +10,7 @@ import pytest
 from conftest import PENDULUM, RIGID_BODY, UR10
 
 from inverse_dynamics import Solver, errors, load_robot
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.robots.solvers import open_solver
 
 COPIES = {
     "pickle": lambda solver: pickle.loads(pickle.dumps(solver)),

@@ -9,7 +9,7 @@ import pytest
 
 from inverse_dynamics import Solver, load_robot
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.results.robot_files import write_robot
+from inverse_dynamics.robots.robot_files import write_robot
 
 STATE = np.random.default_rng(5).uniform(-1, 1, (3, 6))
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"

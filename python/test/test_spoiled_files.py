@@ -15,8 +15,8 @@ import pytest
 from simulation_arms import joint, link, robot
 
 from inverse_dynamics import Solver, UserError, load_robot
-from inverse_dynamics.base.ament import package_share
-from inverse_dynamics.robot.robots import RIGID_BODY
+from inverse_dynamics.installation.ament import package_share
+from inverse_dynamics.robots.robots import RIGID_BODY
 
 # What isn't a number, made from one.
 NOT_NUMBERS = (

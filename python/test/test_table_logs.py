@@ -11,12 +11,12 @@ import pytest
 from conftest import JOINTS, motion
 
 from inverse_dynamics import Solver, evaluate, load_robot, read_recording
-from inverse_dynamics.data.array_files import HDF5
-from inverse_dynamics.data.log_format import LogFormat
-from inverse_dynamics.data.recordings import position_ranges
-from inverse_dynamics.data.table_logs import read_motion
-from inverse_dynamics.data.tables import open_table, parts_joined
 from inverse_dynamics.errors import BagError, EvaluationError
+from inverse_dynamics.recordings.array_files import HDF5
+from inverse_dynamics.recordings.log_format import LogFormat
+from inverse_dynamics.recordings.recordings import position_ranges
+from inverse_dynamics.recordings.table_logs import read_motion
+from inverse_dynamics.recordings.tables import open_table, parts_joined
 
 HEADER = "time,position.a,velocity.a,effort.a\n"
 ROWS = "0,1,2,3\n0.01,1.5,2.5,3.5\n"

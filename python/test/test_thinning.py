@@ -4,7 +4,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from inverse_dynamics.figures.thinning import error_limit, line, peaks
+from inverse_dynamics.show.thinning import error_limit, line, peaks
 
 
 @pytest.mark.parametrize("count", [3, 10, 11, 12, 23, 99, 1000])

@@ -30,7 +30,7 @@ from inverse_dynamics import (
     write_trajectory_torques,
 )
 from inverse_dynamics.errors import BagError, OutputError, RobotError
-from inverse_dynamics.robot.descriptions import effort_limits
+from inverse_dynamics.robots.descriptions import effort_limits
 
 BACKWARDS = JOINTS[::-1]
 

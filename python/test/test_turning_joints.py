@@ -11,16 +11,16 @@ from conftest import KDL, RIGID_BODY
 from simulation_arms import joint, link, robot
 
 from inverse_dynamics import Solver, evaluate, identify
-from inverse_dynamics.data.bags import write_joint_logs
-from inverse_dynamics.data.joint_log import JointLog
-from inverse_dynamics.evaluation.contacts import find_contacts
+from inverse_dynamics.contact.contacts import find_contacts
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.turns import on_one_turn
-from inverse_dynamics.identification.payload import estimate_payload
-from inverse_dynamics.results.excitations import excite
-from inverse_dynamics.robot.robots import load_robot, robot_of_description
+from inverse_dynamics.excitation.excitation import ExcitationOptions
+from inverse_dynamics.excitation.excite import excite
+from inverse_dynamics.payload.payload import estimate_payload
+from inverse_dynamics.recordings.bags import write_joint_logs
+from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.robots.robots import load_robot, robot_of_description
 from inverse_dynamics.simulation import simulate, write_run
-from inverse_dynamics.simulation.excitation import ExcitationOptions
 
 JOINTS = ("yaw", "pitch", "roll")
 TURN = 2 * np.pi

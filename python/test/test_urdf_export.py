@@ -14,8 +14,8 @@ from identified_arms import arm, engine, identification
 from test_identification_files import OBLIQUE
 
 from inverse_dynamics import FastModel, Solver
-from inverse_dynamics.results.urdf_export import mjcf_text, urdf_text
-from inverse_dynamics.robot.robots import RIGID_BODY, Robot
+from inverse_dynamics.identification.urdf_export import mjcf_text, urdf_text
+from inverse_dynamics.robots.robots import RIGID_BODY, Robot
 
 
 @pytest.fixture(scope="module")

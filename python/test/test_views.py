@@ -12,7 +12,7 @@ from test_evaluation import JOINTS, motion
 import inverse_dynamics
 from inverse_dynamics import Solver, evaluate, load_robot
 from inverse_dynamics.errors import ArgumentError, BagError
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.robots.solvers import open_solver
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +101,7 @@ def test_an_evaluation_is_a_data_frame(evaluation, monkeypatch, library):
     module = ModuleType(library)
     module.DataFrame = dict
     monkeypatch.setitem(sys.modules, library, module)
-    monkeypatch.setattr("inverse_dynamics.base.extras.is_installed", lambda _: True)
+    monkeypatch.setattr("inverse_dynamics.installation.extras.is_installed", lambda _: True)
     frame = getattr(evaluation, f"to_{library}")()
     np.testing.assert_array_equal(frame["measured.elbow_joint"], evaluation.measured[:, 2])
     assert {"time", "position.elbow_joint", "kept"} <= set(frame)

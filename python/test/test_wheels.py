@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from conftest import fails
 
-from inverse_dynamics.base import extras, wheels
+from inverse_dynamics.demo import demo
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.results import demo
+from inverse_dynamics.installation import extras, wheels
 
 ROOT = Path(__file__).resolve().parents[2]
 

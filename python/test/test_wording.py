@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-from inverse_dynamics.base.wording import counted, did_you_mean, shown
 from inverse_dynamics.errors import BagError, EvaluationError, UserError
+from inverse_dynamics.wording import counted, did_you_mean, shown
 
 
 @pytest.mark.parametrize(("count", "expected"), [(0, "0 joints"), (1, "1 joint"), (2, "2 joints")])

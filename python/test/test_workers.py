@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from inverse_dynamics.base.workers import Failure, cores, in_processes
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.evaluation.workers import Failure, cores, in_processes
 
 # What workers call: they import this module by its name.
 
@@ -128,7 +128,7 @@ def test_workers_end_with_the_process_that_started_them(tmp_path):
     file = tmp_path / "process"
     script = (
         "import sys; sys.path.insert(0, sys.argv[2])\n"
-        "from inverse_dynamics.base.workers import in_processes\n"
+        "from inverse_dynamics.evaluation.workers import in_processes\n"
         "from test_workers import sleep_after_the_first\n"
         "in_processes(sleep_after_the_first, [sys.argv[1]], jobs=1, done=print)\n"
     )

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From samples to accelerations, computed torques, errors; comparisons of several results."""
+"""From a recording to computed torques and their errors: method, files, page, figure, verb."""

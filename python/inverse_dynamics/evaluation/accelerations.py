@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import Mask
-    from inverse_dynamics.data.joint_log import JointLog
+    from inverse_dynamics.arrays import Mask
+    from inverse_dynamics.recordings.joint_log import JointLog
 
 # Help text of each rule.
 RULES = {

@@ -21,14 +21,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics import _core
-from inverse_dynamics.robot.model_errors import model_errors_file, read_model_errors
+from inverse_dynamics.robots.model_errors import model_errors_file, read_model_errors
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from inverse_dynamics._core import ArmUncertainty, Solver
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
 
 NORMAL = 1.96  # half the interval that holds 95 % of a normal distribution, in standard deviations
 UNIFORM = 0.95  # the same of a uniform distribution, by its greatest value

@@ -9,45 +9,42 @@ for error in result.errors:
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from inverse_dynamics._core import Accelerations, Effort, JointError, joint_errors
-from inverse_dynamics.base.arguments import checked
-from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data.bags import topics_of
-from inverse_dynamics.data.joint_log import JointLog, check_clock
-from inverse_dynamics.data.log_format import LogFormat
-from inverse_dynamics.data.recordings import open_motion
-from inverse_dynamics.data.time_window import TimeWindow
+from inverse_dynamics.arguments import checked
+from inverse_dynamics.diagnosis.arm import arm_model
+from inverse_dynamics.diagnosis.compare import Cause, compare, meaning_of_efforts
+from inverse_dynamics.diagnosis.samples import pieces_of
 from inverse_dynamics.evaluation.accelerations import MASKS, Samples
 from inverse_dynamics.evaluation.bands import read_band
-from inverse_dynamics.evaluation.causes.arm import arm_model
-from inverse_dynamics.evaluation.causes.compare import Cause, compare, meaning_of_efforts
-from inverse_dynamics.evaluation.causes.samples import pieces_of
 from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.views import Views
-from inverse_dynamics.robot.chain_geometry import chain_geometry, model_limits
-from inverse_dynamics.robot.descriptions import parse_description, read_description
-from inverse_dynamics.robot.dh_tables import guess_notes
-from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot, with_changes
-from inverse_dynamics.robot.solvers import description_notes, open_solver
+from inverse_dynamics.progress import no_progress
+from inverse_dynamics.recordings.bags import topics_of
+from inverse_dynamics.recordings.joint_log import JointLog, check_clock
+from inverse_dynamics.recordings.log_format import LogFormat
+from inverse_dynamics.recordings.recordings import open_motion
+from inverse_dynamics.recordings.time_window import TimeWindow
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.dh_tables import guess_notes
+from inverse_dynamics.robots.robots import Robot, load_robot, with_changes
+from inverse_dynamics.robots.solvers import description_notes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics._core import Evaluated, Solver, Verdict
-    from inverse_dynamics.base.arrays import DataFrame, Floats, Parameter
-    from inverse_dynamics.base.progress import Progress
-    from inverse_dynamics.data.bags import JointStateTopic
-    from inverse_dynamics.data.joint_log import Clock
-    from inverse_dynamics.evaluation.causes.arm import ArmModel
+    from inverse_dynamics._core import Evaluated, Verdict
+    from inverse_dynamics.arrays import DataFrame, Floats, Parameter
+    from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.bags import JointStateTopic
+    from inverse_dynamics.recordings.joint_log import Clock
 
-__all__ = ["Arm", "Evaluation", "JointError", "check_options", "evaluate", "joint_errors"]
+__all__ = ["Evaluation", "JointError", "check_options", "evaluate", "joint_errors"]
 
 CAUSE = "likely cause of the error: "
 """Prefix of the note that states a diagnosis."""
@@ -278,7 +275,7 @@ def _with_causes(result: Evaluation, arm: Arm) -> Evaluation:
     states = (result.log.q, result.log.qd, result.qdd)
     found = compare(
         pieces_of(arm.joint_names, result.time, states, result.measured, result.samples.kept),
-        arm.model(without_gravity=without_gravity),
+        arm_model(arm, without_gravity=without_gravity),
     )
     result = replace(result, effort=found.doubting(result.effort), diagnosis=found.causes)
     if not found.text:
@@ -318,58 +315,6 @@ def check_options(
     TimeWindow(start, end)
 
 
-class Arm:
-    """The arm of a run configuration, before a recording is read. Raises UserError."""
-
-    def __init__(self, robot: Robot) -> None:
-        from inverse_dynamics import _core
-
-        description = "" if robot.urdf is None else read_description(robot.urdf)
-        self.description = description
-        self.solver = open_solver(robot, description)
-        self.joint_names = tuple(self.solver.joint_names)
-        self.recorded_names = tuple(_core.recorded_names(robot, list(self.joint_names)))
-        _core.effort_options(robot, self.solver)  # drive gains that don't fit are refused
-        if description:
-            parse_description(description, robot.urdf)  # also where the solver doesn't read it
-        self.units = tuple(
-            "N" if kind == "prismatic" else "N m" for kind in self.solver.joint_types
-        )
-        self.robot = robot
-
-    def limit(self, name: str, absent: float) -> Floats:
-        """(n,) of `lower`, `upper`, `velocity` or `effort`: the description's, or without one the model's."""
-        robot = self.robot
-        limits: Sequence[Mapping[str, float]] = [{}] * len(self.joint_names)
-        if self.description:
-            chain = chain_geometry(self.description, robot.root, self.joint_names)
-            limits = [joint.limits for joint in chain]
-        elif robot.model is not None:
-            limits = model_limits(robot.model)
-        return np.array([of_joint.get(name, absent) for of_joint in limits])
-
-    @cached_property
-    def subtracted(self) -> Solver:
-        """The solver whose gravity efforts without gravity lack: of an identified model, the description's.
-
-        The robot subtracts what its maker computes, which nobody measures with such efforts.
-        """
-        robot = self.robot
-        if robot.model is None or robot.urdf is None or robot.plugin != RIGID_BODY:
-            return self.solver
-        return open_solver(replace(robot, model=None, friction=False), self.description)
-
-    def model(self, *, without_gravity: bool = False) -> ArmModel:
-        """What causes of errors are compared on. without_gravity: whether efforts are."""
-        return arm_model(
-            self.robot,
-            self.solver,
-            self.description,
-            self.subtracted,
-            without_gravity=without_gravity,
-        )
-
-
 def torques_with_gravity(evaluation: Evaluation, robot: Robot | None = None) -> Floats:
     """(N, n) measured torques; to efforts without gravity, that of Arm(robot).subtracted is added."""
     if evaluation.effort.meaning != "torque_without_gravity":
@@ -405,7 +350,7 @@ def _compare(
             found.table.series[name] for name in ("time", "q", "qd", "qdd", "effort", "kept")
         )
         samples = pieces_of(arm.joint_names, time, (q, qd, qdd), recorded, kept)
-        return meaning_of_efforts(samples, arm.model(), effort.drive_gains)
+        return meaning_of_efforts(samples, arm_model(arm), effort.drive_gains)
 
     options = _core.EvaluationOptions(
         joints=list(arm.recorded_names),

@@ -13,19 +13,19 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.base.wording import listed
-from inverse_dynamics.data.log_format import LogFormat
-from inverse_dynamics.data.recordings import position_ranges
-from inverse_dynamics.robot.descriptions import carried_joints
-from inverse_dynamics.robot.solvers import brings_own_model
+from inverse_dynamics.recordings.log_format import LogFormat
+from inverse_dynamics.recordings.recordings import position_ranges
+from inverse_dynamics.robots.descriptions import carried_joints
+from inverse_dynamics.robots.solvers import brings_own_model
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
     from typing import Any
 
-    from inverse_dynamics.base.arrays import Parameter
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.arrays import Parameter
+    from inverse_dynamics.robots.robots import Robot
 
 LOCKED = "locked_joints."
 

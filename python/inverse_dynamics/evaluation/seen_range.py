@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.base.wording import listed
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.arrays import Floats, Mask
 
 _BEYOND = (0.05, 0.05, 0.25)  # of what was seen, of q, qd, qdd, that depend on the filter
 _MOST_NAMED = 4

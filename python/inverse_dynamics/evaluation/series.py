@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from inverse_dynamics.evaluation.accelerations import MASKS
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.arrays import Floats, Mask
 
 
 class Column(NamedTuple):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.data.time_window import TimeWindow
+from inverse_dynamics.recordings.time_window import TimeWindow
 
 if TYPE_CHECKING:
     from inverse_dynamics._core import Accelerations, JointError

@@ -7,11 +7,11 @@ from html import escape
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.base.extras import require
 from inverse_dynamics.evaluation.series import series_columns
+from inverse_dynamics.installation.extras import require
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import DataFrame
+    from inverse_dynamics.arrays import DataFrame
 
 _MOST_JOINTS = 12  # of a text on one screen
 _HEAD = ("joint", "unit", "MAE", "RMSE", "NRMSE", "bias", "R2")
@@ -58,7 +58,9 @@ class Views:
         Raises MissingPackageError.
         """
         require("a figure", "matplotlib")
-        return import_module("inverse_dynamics.figures.plots").torque_figure(self)
+        from inverse_dynamics.evaluation.figure import torque_figure
+
+        return torque_figure(self)  # type: ignore[arg-type]
 
     def to_pandas(self) -> DataFrame:
         """All series as a pandas.DataFrame, a row per sample; columns: evaluation/series.py.

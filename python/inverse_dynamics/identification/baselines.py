@@ -9,16 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.evaluation.posture import LOCKED
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.robots.robots import RIGID_BODY, with_changes
+from inverse_dynamics.robots.solvers import open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from inverse_dynamics._core import Solver
-    from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.robots.robots import Robot
 
     Motion = tuple[Floats, Floats, Floats]
     """q, qd, qdd; (M, n) each."""
@@ -66,11 +65,6 @@ def _refitted(
     values = [np.linalg.lstsq(columns[:, :, j], e)[0] for j, e in enumerate(errors.T)]
     rigid, own = parts(q, qd, computed)
     return np.asarray(rigid + np.einsum("kcj,jc->kj", own, values))
-
-
-def solver_of(robot: Robot) -> Solver:
-    """The solver of a run configuration with its description. Raises UserError."""
-    return open_solver(robot, "" if robot.urdf is None else read_description(robot.urdf))
 
 
 def root_mean_squares(columns: Sequence[Mapping[str, Floats]]) -> dict[str, Floats]:

@@ -19,7 +19,7 @@ from inverse_dynamics.identification.result import IdentificationError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
     FitBlock = tuple[Floats, Floats, Floats, Floats]

@@ -12,7 +12,7 @@ from inverse_dynamics.identification.result import IdentificationError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
 
 
 def coupling_of(

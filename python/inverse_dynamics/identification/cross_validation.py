@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from inverse_dynamics._core import ArmFit, ArmFitter
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.blocks import Block
 
 STRENGTHS = (1000.0, 100.0, 10.0)

@@ -22,23 +22,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics._core import ArmFitOptions
-from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.evaluation import Arm, evaluate
+from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.identification.blocks import blocks_of
 from inverse_dynamics.identification.knowledge import Knowledge, student_t
 from inverse_dynamics.identification.result import DriveGain, IdentificationError
-from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
+from inverse_dynamics.progress import no_progress
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.robots import RIGID_BODY, with_changes
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from inverse_dynamics._core import ArmData, ArmFit, ArmFitter
-    from inverse_dynamics.base.arrays import Floats, Mask, Parameter
-    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.arrays import Floats, Mask, Parameter
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.identification.blocks import FitBlock
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.progress import Progress
+    from inverse_dynamics.robots.robots import Robot
 
     KnownPayload = tuple[Path | str, Mapping[str, Parameter]]
     """A recording, and the parameters payload.* of what the tip carries in it."""

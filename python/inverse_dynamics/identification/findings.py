@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from inverse_dynamics._core import ArmFitter
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.blocks import Block
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.robots.robots import Robot
 
 _LITTLE_MOTION = 0.1  # rad or m
 _FEW_SAMPLES = 20

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
 from inverse_dynamics.identification.baselines import baseline_torques, baselines, root_mean_squares
 from inverse_dynamics.identification.result import (
@@ -24,16 +23,17 @@ from inverse_dynamics.identification.result import (
     valid_samples,
 )
 from inverse_dynamics.identification.uncertainty import uncertainty_text
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.model_errors import model_errors_file
-from inverse_dynamics.robot.robots import RIGID_BODY
+from inverse_dynamics.progress import no_progress
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.model_errors import model_errors_file
+from inverse_dynamics.robots.robots import RIGID_BODY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.result import Identification
+    from inverse_dynamics.progress import Progress
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics import _core
-from inverse_dynamics.base.arguments import checked
-from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.arguments import checked
 from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
 from inverse_dynamics.evaluation.posture import locked_joints, posture_of
 from inverse_dynamics.evaluation.turns import on_one_turn
@@ -58,21 +57,22 @@ from inverse_dynamics.identification.uncertainty import (
     levels_of,
     with_levels,
 )
-from inverse_dynamics.robot.chain_geometry import chain_geometry
-from inverse_dynamics.robot.descriptions import effort_limits, read_description
-from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot
+from inverse_dynamics.progress import no_progress
+from inverse_dynamics.robots.chain_geometry import chain_geometry
+from inverse_dynamics.robots.descriptions import effort_limits, read_description
+from inverse_dynamics.robots.robots import RIGID_BODY, Robot, load_robot
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from inverse_dynamics._core import ArmFitter, FastModel, Solver
-    from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.evaluation.bands import TorqueBand
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.identification.baselines import Computed
     from inverse_dynamics.identification.drive_gains import KnownPayload
     from inverse_dynamics.identification.result import DriveGain, Level
+    from inverse_dynamics.progress import Progress
 
 BLOCKS = 5
 """Contiguous blocks that all recordings are cut into, of which each is predicted by the others."""
@@ -126,7 +126,7 @@ def identify(
     >>> from dataclasses import replace
     >>> import numpy as np
     >>> from inverse_dynamics import identify, read_joint_log, write_joint_logs
-    >>> from inverse_dynamics.results.demo import stored_recording
+    >>> from inverse_dynamics.demo.demo import stored_recording
     >>> log = read_joint_log(stored_recording("ur10_simulated"))
     >>> rough = replace(log, effort=log.effort + 5 * np.tanh(log.qd / 0.05))  # N m of friction
     >>> write_joint_logs("rough", {"/joint_states": rough})

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.causes.compare import Cause, residual_causes
-from inverse_dynamics.evaluation.causes.samples import pieces_of
+from inverse_dynamics.diagnosis.compare import Cause, residual_causes
+from inverse_dynamics.diagnosis.samples import pieces_of
 from inverse_dynamics.evaluation.evaluation import CAUSE
 from inverse_dynamics.identification.result import IdentificationError, valid_samples
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

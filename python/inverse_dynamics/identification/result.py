@@ -19,17 +19,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics._core import FastModel, Solver
-from inverse_dynamics.base.wording import counted, listed
 from inverse_dynamics.errors import EvaluationError, RobotError
-from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.robots import RIGID_BODY
+from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.robots import RIGID_BODY
+from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.evaluation.bands import TorqueBand
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.robots.robots import Robot
 
 COLUMNS = {
     "urdf": "URDF",  # the description, without friction

@@ -23,7 +23,7 @@ from inverse_dynamics.identification.uncertainty import USUAL_COUNTS
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.result import Identification
 
 _TORQUES = ("fv", "fc", "fl", "fs")  # of smooth_coulomb

@@ -13,20 +13,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics import _core
-from inverse_dynamics.base.plain import plain
+from inverse_dynamics.contact.contacts import LEAST_GAIN
 from inverse_dynamics.evaluation.bands import LEVEL, SHARE, TorqueBand
-from inverse_dynamics.evaluation.contacts import LEAST_GAIN
 from inverse_dynamics.identification.blocks import together
 from inverse_dynamics.identification.cross_validation import errors_of
 from inverse_dynamics.identification.result import Level, valid_samples
-from inverse_dynamics.robot.model_errors import SCHEMA, read_model_errors, sha256
+from inverse_dynamics.outputs.plain import plain
+from inverse_dynamics.robots.model_errors import SCHEMA, read_model_errors, sha256
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from inverse_dynamics._core import ArmFit, ArmFitter, ArmUncertainty, Solver
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.blocks import Block
     from inverse_dynamics.identification.cross_validation import Chosen
     from inverse_dynamics.identification.knowledge import Knowledge

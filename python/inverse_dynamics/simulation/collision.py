@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.base.extras import lazily_imported
+from inverse_dynamics.installation.extras import lazily_imported
 from inverse_dynamics.simulation.model import spec_of
 
 if TYPE_CHECKING:
     import mujoco
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.simulation.model import SimulatedRobot
 else:
     mujoco = lazily_imported("mujoco", "a simulation")

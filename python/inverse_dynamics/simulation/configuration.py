@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.base.ament import resolve
-from inverse_dynamics.base.located_yaml import read_mapping
 from inverse_dynamics.errors import RobotError
+from inverse_dynamics.installation.ament import resolve
+from inverse_dynamics.robots.located_yaml import read_mapping
 from inverse_dynamics.simulation.controller import Gains
 from inverse_dynamics.simulation.physics import RATES
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from inverse_dynamics.base.located_yaml import Mapping
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.robots.located_yaml import Mapping
+    from inverse_dynamics.robots.robots import Robot
 
 DEFAULT_RATE = 500  # Hz, where neither the caller nor the run configuration states one
 

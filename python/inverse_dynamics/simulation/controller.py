@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
 

@@ -16,7 +16,7 @@ import numpy as np
 from inverse_dynamics.simulation.errors import SimulationError, TrajectoryError
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.simulation.collision import ContactChecker
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory

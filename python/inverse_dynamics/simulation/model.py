@@ -21,15 +21,15 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from inverse_dynamics.base.extras import lazily_imported
-from inverse_dynamics.base.wording import listed
+from inverse_dynamics.installation.extras import lazily_imported
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.urdf import UrdfChain, chain_from_urdf
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     import mujoco
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
 else:
     mujoco = lazily_imported("mujoco", "a simulation")
 

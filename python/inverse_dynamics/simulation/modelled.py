@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics._core import FastModel, Solver
-from inverse_dynamics.base.decimals import decimal
-from inverse_dynamics.robot.chain_geometry import chain_geometry
-from inverse_dynamics.robot.descriptions import parse_description, read_description
-from inverse_dynamics.robot.link_parameters import inertial_elements, pseudo_inertia, turned
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.decimals import decimal
+from inverse_dynamics.robots.chain_geometry import chain_geometry
+from inverse_dynamics.robots.descriptions import parse_description, read_description
+from inverse_dynamics.robots.link_parameters import inertial_elements, pseudo_inertia, turned
+from inverse_dynamics.robots.solvers import open_solver
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.limits import require_limits
 from inverse_dynamics.simulation.model import (
@@ -31,8 +31,8 @@ from inverse_dynamics.simulation.model import (
 from inverse_dynamics.simulation.urdf import chain_from_urdf
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.robots.robots import Robot
     from inverse_dynamics.simulation.model import Gravity, Payload
     from inverse_dynamics.simulation.urdf import UrdfChain
 

@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.base.extras import lazily_imported
-from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.installation.extras import lazily_imported
+from inverse_dynamics.progress import no_progress
 from inverse_dynamics.simulation.controller import (
     DesiredMotion,
     JointTrajectoryController,
@@ -33,8 +33,8 @@ from inverse_dynamics.simulation.errors import SimulationError
 if TYPE_CHECKING:
     import mujoco
 
-    from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.progress import Progress
     from inverse_dynamics.simulation.controller import Gains
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory

@@ -22,21 +22,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.base.extras import lazily_imported
-from inverse_dynamics.base.files import Contents, move_up, write_text, written_whole
-from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.base.wording import listed
-from inverse_dynamics.data.bags import write_joint_logs
-from inverse_dynamics.data.joint_log import JointLog
-from inverse_dynamics.simulation.collision import ContactChecker
-from inverse_dynamics.simulation.configuration import StatedSimulation
-from inverse_dynamics.simulation.controller import default_gains
-from inverse_dynamics.simulation.errors import SimulationError
-from inverse_dynamics.simulation.excitation import (
+from inverse_dynamics.excitation.excitation import (
     ExcitationOptions,
     condition_of,
     optimise_excitation,
 )
+from inverse_dynamics.installation.extras import lazily_imported
+from inverse_dynamics.outputs.files import Contents, move_up, write_text, written_whole
+from inverse_dynamics.progress import no_progress
+from inverse_dynamics.recordings.bags import write_joint_logs
+from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.simulation.collision import ContactChecker
+from inverse_dynamics.simulation.configuration import StatedSimulation
+from inverse_dynamics.simulation.controller import default_gains
+from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.modelled import ModelFriction, description_of, simulated_robot
 from inverse_dynamics.simulation.physics import (
@@ -51,6 +50,7 @@ from inverse_dynamics.simulation.trajectory import (
     read_trajectory,
     trajectory_text,
 )
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -58,10 +58,10 @@ if TYPE_CHECKING:
     import mujoco
 
     from inverse_dynamics._core import Solver
-    from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.base.progress import Progress
-    from inverse_dynamics.data.joint_log import Storage
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.joint_log import Storage
+    from inverse_dynamics.robots.robots import Robot
     from inverse_dynamics.simulation.model import Friction, Gravity, Payload, SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
     from inverse_dynamics.simulation.urdf import UrdfChain

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from inverse_dynamics.base.arrays import Floats, Integers
+    from inverse_dynamics.arrays import Floats, Integers
     from inverse_dynamics.simulation.physics import Motion
 
 EPOCH = 1_700_000_000.0

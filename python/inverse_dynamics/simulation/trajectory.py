@@ -41,16 +41,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.base.extras import lazily_imported
-from inverse_dynamics.base.located_yaml import read_mapping
+from inverse_dynamics.installation.extras import lazily_imported
+from inverse_dynamics.robots.located_yaml import read_mapping
 from inverse_dynamics.simulation.errors import TrajectoryError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.base.located_yaml import Mapping, Value
+    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.robots.located_yaml import Mapping, Value
 
 yaml = lazily_imported("yaml", "a file of a trajectory")
 

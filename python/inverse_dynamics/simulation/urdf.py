@@ -18,12 +18,12 @@ import numpy as np
 
 from inverse_dynamics._core import FastModel
 from inverse_dynamics.errors import RobotError, SolverError
-from inverse_dynamics.robot.chain_geometry import chain_geometry
-from inverse_dynamics.robot.descriptions import numbers_or, parse_description, root_link, tip_of
+from inverse_dynamics.robots.chain_geometry import chain_geometry
+from inverse_dynamics.robots.descriptions import numbers_or, parse_description, root_link, tip_of
 from inverse_dynamics.simulation.errors import SimulationError
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,9 @@ from identified_arms import arm, identification
 from simulation_arms import robots_package
 
 from inverse_dynamics import FastModel, identify, load_robot
+from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.result import Identification, IdentificationError
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.results.urdf_export import mjcf_text
+from inverse_dynamics.identification.urdf_export import mjcf_text
 from inverse_dynamics.simulation import Resolution, Sensors, simulate, write_run
 
 COUPLING = np.eye(6)

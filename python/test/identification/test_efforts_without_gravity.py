@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from inverse_dynamics import FastModel, evaluate, identify, load_robot, read_joint_log
-from inverse_dynamics.data.bags import write_joint_logs
+from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.knowledge import DOUBT
-from inverse_dynamics.results.identifications import write_identification
+from inverse_dynamics.recordings.bags import write_joint_logs
 
 ROBOTS = pytest.mark.parametrize("name", ["ur10", "panda"])
 DOWN = (0.0, 0.0, -9.81)

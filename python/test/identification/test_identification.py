@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from inverse_dynamics import _core, evaluate, identify, load_robot, write_joint_logs
-from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.bands import SHARE
 from inverse_dynamics.evaluation.evaluation import CAUSE, Evaluation
@@ -20,13 +19,14 @@ from inverse_dynamics.evaluation.series import series_columns
 from inverse_dynamics.identification import cross_validation
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of
+from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.findings import motion_findings
 from inverse_dynamics.identification.knowledge import independent_samples, intervals, knowledge
 from inverse_dynamics.identification.result import COLUMNS, LAWS, IdentificationError
 from inverse_dynamics.identification.summary import delay_told
 from inverse_dynamics.identification.temperature import at_temperature
-from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.robots.descriptions import read_description
 
 # Mean over the joints of the RMSE on five held-out blocks [N m].
 MOST = {"ur10": 1.2, "panda": 0.28}

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids excite`: the motion to record for identification."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.terminal.options import Options, chosen_robot, given_overrides
+from inverse_dynamics.terminal.values import positive_number, share, whole_number
+
+if TYPE_CHECKING:
+    import argparse
+
+GROUP = "identify"
+SUMMARY = "find the motion to record for identification"
+DESCRIPTION = (
+    "Find the motion after which the torques of a robot can be predicted best: within the "
+    "limits, clear of the robot itself and of the table, with slow reversals for friction."
+)
+EPILOG = """\
+examples:
+  ids excite --robot ur10_simulated --out motion.yaml
+      20 s within 80 % of the limits of the URDF; rehearse it in simulation:
+  ids simulate --robot ur10_simulated --trajectory motion.yaml --out rehearsal
+
+  ids excite --urdf arm.urdf --root base --tip flange --out motion.yaml \\
+      --duration 30 --share 0.5
+      half of the limits, longer: the table shows the effect on the uncertainty
+
+  ids excite --robot my_robot.yaml --given recording --out missing.yaml
+      a motion that adds the information that the recording lacks
+
+  ids excite --robot my_robot.yaml --payload --out weigh.yaml
+      8 s of motion of the last three joints, to identify a body at the tip
+
+results, written together or not at all; Ctrl-C leaves nothing:
+  motion.yaml                    the motion, for `ids simulate --trajectory`
+  motion_joint_trajectory.yaml   trajectory_msgs/JointTrajectory, whose first point is the start pose,
+                                 3 s after the start: move the arm there first, that path is not checked
+"""
+
+
+def declare(options: Options) -> None:
+    """Arguments and options."""
+    which = options.one_of(required=True)
+    which.robot()
+    which.add("--urdf FILE", "robot description, instead of --robot", Path)
+    options.output("FILE", "the motion (YAML)", required=True)
+    options.shared("--json")
+    options.add(
+        "--given RECORDING",
+        "recordings that will also be used: the motion adds the information that they lack",
+        Path,
+        nargs="+",
+        default=[],
+    )
+    options.add(
+        "--payload",
+        "a motion that identifies only the ten parameters of a body at the tip",
+    )
+    options.add(
+        "--seed SEED",
+        "seed of the search: the same seed gives the same motion",
+        whole_number,
+        default=0,
+    )
+    options.overrides("--root", "--tip", "--gravity")
+    _declare_limits(options.group("limits"))
+
+
+def _declare_limits(limits: Options) -> None:
+    limits.add(
+        "--duration S",
+        "length of the motion (default: 20; with --payload: 8)",
+        positive_number,
+    )
+    limits.add(
+        "--share P",
+        "share of the limits of position, velocity, acceleration and effort (default: 0.8)",
+        share,
+    )
+    limits.add(
+        "--full-speed-in S",
+        "shortest time to reach the velocity limit, which limits the acceleration (default: 0.5)",
+        positive_number,
+        dest="time_to_full_speed",
+    )
+    limits.add(
+        "--clearance M",
+        "least distance to the arm itself and to the table (default: 0.01)",
+        positive_number,
+    )
+    limits.add(
+        "--no-table",
+        "allow the arm to reach below its base",
+        dest="table",
+        action="store_false",
+    )
+    limits.add(
+        "--step S",
+        "time between points of the JointTrajectory (default: at the waypoints, about 0.5 s apart, "
+        "which controllers join by polynomials of the fifth order)",
+        positive_number,
+    )
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.excitation.excitation import ExcitationOptions
+    from inverse_dynamics.excitation.excite import (
+        check_output,
+        excitation_table,
+        excite,
+        sending_file,
+        summary,
+        write_excitation,
+    )
+    from inverse_dynamics.robots.robots import with_changes
+    from inverse_dynamics.terminal.screen import announce, progress_bar, show, title
+    from inverse_dynamics.terminal.tables import on_screen
+
+    robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
+    check_output(arguments.out, robot, arguments.given, overwrite=arguments.overwrite)
+    names = ("duration", "share", "time_to_full_speed", "clearance", "table", "payload")
+    given = {name: getattr(arguments, name) for name in names}
+    options = ExcitationOptions(
+        **{name: value for name, value in given.items() if value is not None}
+    )
+    with progress_bar() as progress:
+        result = excite(
+            robot,
+            given=arguments.given,
+            options=options,
+            seed=arguments.seed,
+            say=announce,
+            progress=progress,
+        )
+    write_excitation(result, arguments.out, overwrite=arguments.overwrite, step=arguments.step)
+    files = [arguments.out, sending_file(arguments.out)]
+    found = result.excitation
+    motion = f"{found.trajectory.duration:g} s"
+    if not options.payload:  # else most of the arm rests
+        motion += f", condition number of the base regressor {found.condition_number:.1f}"
+    show(
+        arguments,
+        summary(result),
+        files,
+        [
+            title(result.robot),
+            ("note", result.notes),
+            ("motion", motion),
+            ("noise", result.noise_source),
+            on_screen(excitation_table(result)),
+            ("written", ", ".join(map(str, files))),
+        ],
+    )

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The torques of a planned trajectory: method, files, verb."""

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Torques of planned trajectories, and where they pass a joint's effort limit.
+
+    result = trajectory_torques("planned", "ur10_simulated")
+    for load in result.loads:
+        print(load.joint, load.peak, load.limit)
+    write_trajectory_torques(result, "filled")
+
+A trajectory controller adds the efforts of a trajectory to what its feedback gives.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.errors import BagError
+from inverse_dynamics.evaluation.motion_energy import MotionEnergy
+from inverse_dynamics.progress import no_progress
+from inverse_dynamics.recordings.csv_table import is_csv
+from inverse_dynamics.recordings.joint_trajectories import JointTrajectory, read_joint_trajectories
+from inverse_dynamics.recordings.log_format import LogFormat
+from inverse_dynamics.recordings.table_logs import add_derivatives, read_motion
+from inverse_dynamics.recordings.tables import open_table
+from inverse_dynamics.recordings.times import check_seconds
+from inverse_dynamics.recordings.vocabulary import ACCELERATION, POSITION, VELOCITY
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.descriptions import effort_limits
+from inverse_dynamics.robots.robots import Robot, load_robot
+from inverse_dynamics.wording import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.arrays import Floats, Integers
+    from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.tables import Table
+
+_FAR_LONGER = 100.0  # times; milliseconds make it 1000 times
+_WHY = "torques can't be computed without them"
+
+
+@dataclass(frozen=True)
+class JointLoad:
+    """How much a joint is loaded. Times are those of the trajectory, s."""
+
+    joint: str
+    unit: str  # N m or N
+    limit: float  # of the URDF; infinite where it states none
+    peak: float  # the torque of the greatest size, with its sign
+    peak_time: float
+    peak_trajectory: int  # from 1 on
+    passed_time: float | None = None  # when the limit is first passed
+    passed_trajectory: int | None = None
+
+
+@dataclass(frozen=True)
+class TrajectoryTorques:
+    """Torques of the trajectories of a file. n joints, in the order of the chain."""
+
+    path: Path
+    robot: Robot
+    joint_names: tuple[str, ...]  # as the file has them
+    units: tuple[str, ...]
+    limits: Floats  # (n,) N m; infinite: none
+    times: tuple[Floats, ...]  # (N,) s, a trajectory each
+    torques: tuple[Floats, ...]  # (N, n) N m, a trajectory each
+    energy: MotionEnergy  # of all trajectories
+    trajectories: tuple[JointTrajectory, ...] = ()  # of a bag
+    topic: str = ""  # of a bag
+    notes: tuple[str, ...] = ()
+
+    @property
+    def loads(self) -> tuple[JointLoad, ...]:
+        """Of each joint, over all trajectories."""
+        counts = [len(times) for times in self.times]
+        trajectory = np.repeat(np.arange(1, len(counts) + 1), counts)
+        time, torques = np.concatenate(self.times), np.concatenate(self.torques)
+        return tuple(self._load(j, trajectory, time, torques[:, j]) for j in range(len(self.units)))
+
+    def _load(self, j: int, trajectory: Integers, time: Floats, torque: Floats) -> JointLoad:
+        most = int(np.abs(torque).argmax())
+        load = JointLoad(
+            self.joint_names[j],
+            self.units[j],
+            float(self.limits[j]),
+            float(torque[most]),
+            float(time[most]),
+            int(trajectory[most]),
+        )
+        passed = np.flatnonzero(np.abs(torque) > self.limits[j])
+        if not len(passed):
+            return load
+        first = int(passed[0])
+        return replace(
+            load, passed_time=float(time[first]), passed_trajectory=int(trajectory[first])
+        )
+
+
+def trajectory_torques(
+    path: Path | str,
+    robot: Robot | Path | str,
+    *,
+    topic: str = "",
+    progress: Progress = no_progress,
+) -> TrajectoryTorques:
+    """Compute the torques of each point of each trajectory.
+
+    Parameters
+    ----------
+    path
+        A recording of trajectory_msgs/JointTrajectory, or a table; efforts aren't needed.
+    robot
+        As evaluate() takes it.
+    topic
+        By default the only one with trajectories.
+
+    Raises
+    ------
+    UserError
+        BagError, RobotError, SolverError.
+    """
+    from inverse_dynamics import _core
+
+    path = Path(path)
+    if not isinstance(robot, Robot):
+        robot = load_robot(robot)
+    arm = Arm(robot)
+    solver, joints = arm.solver, arm.recorded_names
+    trajectories: list[JointTrajectory] = []
+    notes: tuple[str, ...] = ()
+    if is_csv(path):
+        table = open_table(path, topic=topic)
+        state, notes = _states_of_table(table, joints, LogFormat.of(robot), progress)
+        states = [state]
+    else:
+        trajectories = read_joint_trajectories(path, topic, progress)
+        states = [_states_of_message(trajectory, joints) for trajectory in trajectories]
+    if not any(len(time) for time, _ in states):
+        raise BagError(f"{path}: expected points of a trajectory, got none")
+    progress("computing", 0, len(states))
+    torques = [solver.torques(*state) if len(time) else state[0] for time, state in states]
+    for number, computed in enumerate(torques, 1):
+        _core.check_torques(
+            f"{path}, trajectory {number}", list(solver.joint_names), list(arm.units), computed
+        )
+    progress("computing", len(states), len(states))
+    return TrajectoryTorques(
+        path=path,
+        robot=robot,
+        joint_names=joints,
+        units=arm.units,
+        limits=effort_limits(robot.urdf, arm.description, solver.joint_names),
+        times=tuple(time for time, _ in states),
+        torques=tuple(torques),
+        energy=MotionEnergy.together(
+            MotionEnergy.of(solver, time, state[0], state[1], computed)
+            for (time, state), computed in zip(states, torques, strict=True)
+            if len(time)
+        ),
+        trajectories=tuple(trajectories),
+        topic=trajectories[0].topic if trajectories else "",
+        notes=(*notes, *solver.warnings),
+    )
+
+
+def _states_of_table(
+    table: Table, joints: Sequence[str], form: LogFormat, progress: Progress
+) -> tuple[tuple[Floats, list[Floats]], tuple[str, ...]]:
+    motion = read_motion(table, joints, form, (POSITION,), progress)
+    if table.incomplete:
+        raise BagError(
+            f"{table.path}: expected a number in every field, got {counted(table.incomplete, 'row')} with "
+            "an empty one; fill it in, or leave out the row"
+        )
+    kinds, numbers = (VELOCITY, ACCELERATION), dict(motion.numbers)
+    if not numbers.keys() >= {*kinds}:  # positions of points far apart don't determine the motion
+        wanted = "seconds in steps below 0.5, or columns of velocity and acceleration"
+        check_seconds(f"{table.path}", motion.time, wanted)
+    notes = add_derivatives(motion.time, numbers, kinds)
+    states = [numbers[kind] for kind in (POSITION, *kinds)]
+    if _much_faster_than_it_moves(motion.time, *states[:2]):
+        check_seconds(f"{table.path}", motion.time)
+    return (motion.time, states), notes
+
+
+def _much_faster_than_it_moves(time: Floats, q: Floats, qd: Floats) -> bool:
+    """Whether velocities and time make a far longer way than positions go.
+
+    Points of a plan may be seconds apart, so the time alone doesn't tell its unit.
+    """
+    way = np.abs(np.diff(q, axis=0)).sum()
+    mean_velocity = np.abs(qd[1:] + qd[:-1]) / 2
+    driven = (mean_velocity * np.abs(np.diff(time))[:, None]).sum()
+    return bool(driven > _FAR_LONGER * way)
+
+
+def _states_of_message(
+    trajectory: JointTrajectory, joints: Sequence[str]
+) -> tuple[Floats, list[Floats]]:
+    if others := [name for name in trajectory.joint_names if name not in joints]:
+        raise BagError(
+            f"{trajectory.where}: expected the joints {', '.join(joints)}, got also "
+            f"{', '.join(others)}, whose efforts aren't known; give them a trajectory of their own, "
+            "or give the trajectory's names with --joints, in the order of the chain"
+        )
+    state = [
+        trajectory.numbers(field, joints, _WHY)
+        for field in ("positions", "velocities", "accelerations")
+    ]
+    return trajectory.time_from_start.astype(np.float64) * 1e-9, state

@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids identify`: from recordings to a model with friction, and how good it is."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.errors import UserError
+from inverse_dynamics.terminal.options import (
+    CHAIN,
+    RECORDING,
+    Options,
+    chosen_robot,
+    given_overrides,
+    replaces,
+)
+from inverse_dynamics.terminal.values import file_name, numbers, stated_payload
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from inverse_dynamics.arrays import Parameter
+    from inverse_dynamics.identification.files import IdentificationFiles
+    from inverse_dynamics.identification.hold_out import HoldOut
+    from inverse_dynamics.identification.result import Identification
+    from inverse_dynamics.robots.robots import Robot
+    from inverse_dynamics.terminal.screen import Line
+
+GROUP = "identify"
+SUMMARY = "make a model with friction from recordings"
+DESCRIPTION = "Identify a model with friction from recordings of a robot, and state its errors."
+EPILOG = """\
+examples:
+  ids identify recording --robot ur10_real --out arm.yaml
+      a model of the recorded arm: geometry from its description, masses and friction from the data
+
+  ids evaluate other_recording --robot arm.yaml
+      torques of this model for another motion
+
+  ids identify recording --urdf my_arm.urdf --out arm.yaml
+      without a run configuration: the description is enough
+
+  ids identify monday tuesday --robot ur10_real --out arm.yaml \\
+      --hold-out wednesday
+      from two recordings; errors on a third one, which is used for no fit and no choice
+
+  ids identify alone --known-payload loaded=5.0,0,0.02,0.08 \\
+      --urdf my_arm.urdf --effort-is current --out arm.yaml
+      efforts are motor currents [A] with unknown drive gains: a second
+      recording with a known load determines them
+
+Errors are those on held-out parts of the recordings: each of several contiguous
+blocks is predicted by a model fitted to the others, with law, prior and delay chosen on the others.
+Compare them with `present, friction refitted`. docs/identification.md explains the method, and what to do on the robot.
+
+results, all of them or none:
+  arm.yaml                run configuration, for --robot of every verb
+  arm_model.yaml          the model: links, friction, rotor inertia, 95 % band of the torques, range of the data
+  arm_model.json          what the model may be wrong by, for `ids payload` and `contact`
+  arm.html                page: the robot in motion, measured and predicted torques, influence of data and prior
+  arm.json                all numbers
+"""
+
+_OF_RECORDINGS = ("effort_is", "topic", "start", "end")  # arguments of identify()
+
+
+def declare(options: Options) -> None:
+    """Arguments and options."""
+    options.recording(
+        "recordings",
+        "recording, as for `ids evaluate`; several recordings must be of one robot with the same load",
+        nargs="+",
+    )
+    options.robot()
+    options.output(
+        "FILE",
+        "run configuration to write, NAME.yaml; NAME_model.yaml, NAME_model.json, NAME.json and "
+        "NAME.html are written with it",
+        required=True,
+    )
+    options.shared("--json")
+    options.add(
+        "--hold-out RECORDING",
+        "a recording to test the model on, for example of another day; may be given several times",
+        file_name,
+        action="append",
+        default=[],
+    )
+    options.add(
+        "--known-payload RECORDING=LOAD",
+        "a further recording of motor currents, with a known load, which determines the drive gains. "
+        "LOAD as for --payload of other verbs, with its center of mass: "
+        "MASS,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz] in the tip frame, or a YAML file; may be given several "
+        "times",
+        _known_payload,
+        action="append",
+        default=[],
+    )
+    options.add(
+        "--coupling C,C,...",
+        "joints share motors, as a wrist whose last motor turns with the joint before: the rows of C, one after the "
+        "other; friction is that of motors with velocities C qd. By default the matrix of --gears",
+        numbers,
+        default=(),
+    )
+    options.add(
+        "--accept KIND",
+        "identify a model although this mistake is found; a refusal names its KIND. May be given "
+        "several times",
+        action="append",
+        default=[],
+    )
+    options.add(
+        "--urdf-out FILE",
+        "also write the description with the identified inertia, and friction as far as <dynamics> "
+        "can state it",
+        Path,
+    )
+    options.add(
+        "--mjcf-out FILE",
+        "also write a MuJoCo model of the chain",
+        Path,
+    )
+    options.add(
+        "--ur FILE",
+        "also write the shares of friction that the robot compensates, as the request of Universal Robots' driver: "
+        "efforts are its commands, and --robot has a model with all of the friction",
+        Path,
+    )
+    options.overrides(*CHAIN, *RECORDING)
+
+
+def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
+    recording, equals, load = text.rpartition("=")
+    if not equals or not recording:
+        raise argparse.ArgumentTypeError(
+            f"expected RECORDING=MASS,x,y,z, a recording and what the robot carries in it, got '{text}'"
+        )
+    return file_name(recording), stated_payload(load)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.identification.files import (
+        check_identification_files,
+        identification_files,
+        summary,
+        write_identification,
+    )
+    from inverse_dynamics.identification.hold_out import hold_out
+    from inverse_dynamics.identification.identify import identify
+    from inverse_dynamics.identification.universal_robots import friction_request
+    from inverse_dynamics.identification.urdf_export import mjcf_text, urdf_text
+    from inverse_dynamics.recordings.tables import parts_joined
+    from inverse_dynamics.terminal.screen import progress_bar, show
+
+    arguments.recordings = parts_joined(arguments.recordings)
+    robot = _robot(arguments)
+    loads = [recording for recording, _ in arguments.known_payload]
+    inputs = (*arguments.recordings, *arguments.hold_out, *loads, *robot.files)
+    more = {
+        "--urdf-out": arguments.urdf_out,
+        "--mjcf-out": arguments.mjcf_out,
+        "--ur": arguments.ur,
+    }
+    more = {option: file for option, file in more.items() if file is not None}
+    overwrite = replaces(arguments, identification_files(arguments.out)) and (
+        arguments.overwrite or not any(file.exists() for file in more.values())
+    )
+    check_identification_files(arguments.out, overwrite=overwrite, more=more, inputs=inputs)
+    with progress_bar() as progress:
+        found = identify(
+            arguments.recordings,
+            robot,
+            known_payloads=arguments.known_payload,
+            coupling=arguments.coupling,
+            accept=arguments.accept,
+            progress=progress,
+            **{name: getattr(arguments, name) for name in _OF_RECORDINGS},
+        )
+        options = {"effort_is": arguments.effort_is, "topic": arguments.topic}
+        tests = [
+            hold_out(found, recording, progress=progress, **options)
+            for recording in arguments.hold_out
+        ]
+    texts = {"--urdf-out": urdf_text, "--mjcf-out": mjcf_text, "--ur": friction_request}
+    files = write_identification(
+        found,
+        arguments.out,
+        overwrite=overwrite,
+        more={file: texts[option](found) for option, file in more.items()},
+        tests=tests,
+    )
+    lines = [*_lines(found, files, tests), ("also", list(more.values()))]
+    show(arguments, summary(found, tests), [*files, *more.values()], lines)
+
+
+def _robot(arguments: argparse.Namespace) -> Robot:
+    """The run configuration to start from; of a description alone, one with its name."""
+    from inverse_dynamics.evaluation.posture import LOCKED
+    from inverse_dynamics.robots.robots import with_changes
+
+    changes = given_overrides(arguments)
+    for name in _OF_RECORDINGS:
+        changes.pop(name)
+    for name in changes["parameters"] or ():
+        if not name.startswith(LOCKED):
+            raise UserError(
+                f"--parameter {name}: expected {LOCKED}JOINT, the only parameters that a fit uses; leave "
+                "it out"
+            )
+    robot = chosen_robot(arguments)
+    if arguments.robot is None:
+        robot = replace(robot, effort="torque", friction=False)
+    return with_changes(robot, **changes)
+
+
+def _lines(
+    found: Identification, files: IdentificationFiles, tests: Sequence[HoldOut]
+) -> Iterator[Line]:
+    from inverse_dynamics.identification.summary import choices_told
+    from inverse_dynamics.identification.tables import held_out_table
+    from inverse_dynamics.terminal.screen import title
+    from inverse_dynamics.terminal.tables import on_screen
+
+    yield title(found.robot)
+    yield "recordings", ", ".join(map(str, found.recordings))
+    yield from choices_told(found)
+    yield "note", found.notes
+    yield on_screen(held_out_table(found, "RMSE on held-out blocks"))
+    for test in tests:
+        name = f"RMSE on {test.recording}"
+        yield on_screen(held_out_table(found, name, rmse=test.rmse, coverage=test.coverage))
+        yield "note", [f"{test.recording}: {note}" for note in test.notes]
+    yield "finding", [finding.text for finding in found.findings]
+    yield "robot", f"{files.robot}: `ids evaluate RECORDING --robot {files.robot}`"
+    yield "model", files.model
+    yield "uncertainty", f"{files.uncertainty}: for `ids payload` and `contact`"
+    yield "page", files.page
+    yield "figures", files.figures

@@ -1,0 +1,369 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results: written whole or not at all, and never over something else.
+
+    RESULT = Contents("metrics.json", ("metrics.json", "series.npz"))
+    with written_whole(Path("result"), contents=RESULT, overwrite=True) as directory:
+        (directory / "metrics.json").write_text("{}")
+
+Whatever happens meanwhile, the older result or the new one is there, whole: see replacement.py.
+Everything here raises OutputError.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from glob import escape
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.errors import OutputError, UserError
+from inverse_dynamics.outputs.replacement import (
+    WorkFolder,
+    put_directory,
+    put_files,
+    restore_interrupted,
+    signals_deferred,
+    sync_files,
+)
+from inverse_dynamics.wording import counted, listed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+_MOST_NAMED = 5  # files, in a text
+_DIRECTORY = "name another directory with --out"
+
+_outputs: dict[Path, bool] = {}  # of this process, and whether they were written
+_replaced: list[Path] = []
+_at_work: list[WorkFolder] = []
+
+
+@dataclass(frozen=True)
+class Contents:
+    """Files that a command writes into its directory.
+
+    mark: a file that shows the directory to be its result. files: all of them, as paths in it; names
+    with * and ?; {name}: that of the directory. added: what other commands put in. A directory that
+    holds anything else is never overwritten.
+    """
+
+    mark: str
+    files: tuple[str, ...]
+    added: tuple[str, ...] = ()
+
+    def has(self, path: PurePath, directory: Path) -> bool:
+        """Whether the command itself writes that path, relative to the directory."""
+        return _matches(path, self.files, directory)
+
+    def foreign(self, directory: Path) -> list[str]:
+        """Paths in the directory that the user, or another program, has put there. Raises OSError."""
+
+        def fail(error: OSError) -> None:
+            raise error
+
+        found = []
+        own = (self.mark, *self.files, *self.added)
+        for place, directories, names in os.walk(directory, onerror=fail):
+            links = [name for name in directories if Path(place, name).is_symlink()]
+            paths = [Path(place, name).relative_to(directory) for name in (*names, *links)]
+            found += [str(path) for path in paths if not _matches(path, own, directory)]
+        return sorted(found)
+
+
+NOTHING = Contents("", ())
+"""For a directory that is never overwritten."""
+
+
+def check_output_directory(
+    target: Path,
+    *,
+    overwrite: bool = False,
+    contents: Contents = NOTHING,
+    inputs: Iterable[Path | None] = (),
+) -> None:
+    """Check that a directory of results may be made at `target`.
+
+    contents: an older result is known by them; only it (or an empty directory) is ever overwritten,
+    and only if it holds nothing else. inputs: what is read, which must lie elsewhere.
+    """
+    with _output(target, _DIRECTORY):
+        restore_interrupted(target.absolute())
+        if os.path.lexists(target):
+            _check_existing_directory(target, overwrite=overwrite, contents=contents)
+        _check_apart(target, inputs, _DIRECTORY)
+        _check_parent(target, _DIRECTORY)
+
+
+def check_output_file(
+    target: Path,
+    *,
+    overwrite: bool = False,
+    option: str = "--out",
+    inputs: Iterable[Path | None] = (),
+    results: Contents | None = None,
+) -> None:
+    """Check that a file may be made at `target`. option: what names it.
+
+    inputs: what is read, which must lie elsewhere. results: those of the inputs that are directories
+    are such results, and the file may be put into them beside their own files.
+    """
+    remedy = f"name another file with {option}"
+    with _output(target, remedy):
+        restore_interrupted(_file_meant(target))
+        _check_regular(target, remedy)
+        if target.exists() and not overwrite:
+            raise OutputError(f"{target}: exists already; {remedy}, or replace it with --overwrite")
+        _check_apart(target, inputs, remedy, results)
+        _check_parent(target, remedy)
+
+
+def write_text_whole(target: Path, text: str) -> None:
+    """Write a file, or leave what was there."""
+    with file_written_whole(target) as work:
+        write_text(work, text)
+
+
+def write_text(file: Path, text: str) -> None:
+    """Write UTF-8. Names of files that aren't UTF-8 become escapes, which JSON reads back."""
+    file.write_text(text, encoding="utf-8", errors="backslashreplace")
+
+
+@contextmanager
+def file_written_whole(target: Path) -> Iterator[Path]:
+    """File to write; it becomes `target` at the end, and vanishes on an error.
+
+    Where `target` is a symbolic link, what it points to is replaced.
+    """
+    with files_written_whole([target]) as (fresh,):
+        yield fresh
+
+
+@contextmanager
+def files_written_whole(targets: Sequence[Path]) -> Iterator[list[Path]]:
+    """Files to write; they become `targets` together at the end, or none of them does.
+
+    They are put in place in this order. On an error, what was there stays. A process that is killed
+    between two of them leaves some new ones.
+    """
+    remedy = "name another file with --out"
+    _note(targets)
+    with ExitStack() as stack:
+        works = [stack.enter_context(_work(target, remedy)) for target in targets]
+        for target in targets:
+            _check_regular(target, remedy)
+        fresh = [work.new / place.name for work, place in works]
+        yield fresh
+        with signals_deferred():
+            for work, _ in works:
+                sync_files(work.new)
+            put_files(fresh, [place for _, place in works])
+            _note(targets, written=len(_at_work) == len(targets))
+            for work, _ in works:
+                work.remove()
+
+
+@contextmanager
+def written_whole(
+    target: Path,
+    *,
+    overwrite: bool = False,
+    contents: Contents = NOTHING,
+    inputs: Iterable[Path | None] = (),
+) -> Iterator[Path]:
+    """Directory to write into; it becomes `target` at the end, and vanishes on an error.
+
+    The arguments are those of check_output_directory().
+    """
+    check_output_directory(target, overwrite=overwrite, contents=contents, inputs=inputs)
+    with _work(target, _DIRECTORY, link=False) as (work, place):
+        yield work.new
+        outermost = len(_at_work) == 1
+        with signals_deferred():
+            if outermost:
+                sync_files(work.new)
+            if os.path.lexists(place):
+                _check_existing_directory(target, overwrite=overwrite, contents=contents)
+                _replaced.extend([target] if outermost and any(target.iterdir()) else [])
+            put_directory(work.new, place, work.old, overwrite=overwrite)
+            _note([target], written=outermost)
+            work.remove()
+
+
+def start_noting_outputs() -> None:
+    """Forget what earlier calls have written: outcome() is of what follows."""
+    _outputs.clear()
+    _replaced.clear()
+
+
+def replaced() -> str:
+    """Earlier results that were replaced since, in words; "": none."""
+    return f"replaced the earlier result in {', '.join(map(str, _replaced))}" if _replaced else ""
+
+
+def written_before() -> str:
+    """Outputs that were written before another one failed, in words; "": none."""
+    written = [str(path) for path, done in _outputs.items() if done]
+    return f"written before, whole: {', '.join(written)}" if written else ""
+
+
+def outcome() -> str:
+    """State of the outputs, in words: written, or as before."""
+    kept = [str(path) for path, done in _outputs.items() if not done and os.path.lexists(path)]
+    text = written_before().replace("written before", "written") or "nothing was written"
+    return text + (f"; as it was before: {', '.join(kept)}" if kept else "")
+
+
+def move_up(directory: Path) -> None:
+    """Move the files of a directory into the one above, which may share their names, and remove it."""
+    directory = directory.rename(directory.with_name(".moved"))
+    for file in list(directory.iterdir()):
+        file.rename(directory.parent / file.name)
+    directory.rmdir()
+
+
+def _note(targets: Iterable[Path], *, written: bool = False) -> None:
+    """For outcome(). A part of what is being made isn't noted."""
+    for target in targets:
+        if written and target in _outputs:
+            _outputs[target] = True
+        elif not _at_work:
+            _outputs.setdefault(target, False)
+
+
+@contextmanager
+def _output(target: Path, remedy: str) -> Iterator[None]:
+    """Check the name of an output, note it for outcome(), and turn OSError into OutputError."""
+    try:
+        if not target.absolute().name or not target.absolute().name.isprintable():
+            raise OutputError(
+                f"{target}: expected a name in UTF-8 without control characters; name another output"
+            )
+        _note([target])
+        with suppress(FileNotFoundError, NotADirectoryError):
+            target.lstat()  # else too long, for one
+        yield
+    except OSError as error:
+        raise _cannot_write(target, error, remedy) from error
+
+
+@contextmanager
+def _work(target: Path, remedy: str, *, link: bool = True) -> Iterator[tuple[WorkFolder, Path]]:
+    """A work folder, removed at the end, and the place of the output."""
+    works: list[WorkFolder] = []
+    with _output(target, remedy):
+        place = _file_meant(target) if link else target.absolute()
+        try:
+            with signals_deferred():
+                place.parent.mkdir(parents=True, exist_ok=True)
+                works.append(WorkFolder(place))
+                _at_work.extend(works)
+            yield works[0], place
+        except UserError as error:
+            # Texts name what is being made; its reader knows only where it was to be.
+            made = [str(work.new / place.name if link else work.new) for work in works]
+            text = " ".join(map(str, error.args))  # str() of it may be shortened
+            if not made or made[0] not in text:
+                raise
+            raise type(error)(text.replace(made[0], str(target))) from error
+        finally:
+            with signals_deferred():
+                for work in works:
+                    _at_work.remove(work)
+                    work.remove()
+
+
+def _check_existing_directory(target: Path, *, overwrite: bool, contents: Contents) -> None:
+    if not target.is_dir() or target.is_symlink():
+        raise OutputError(f"{target}: exists and isn't a directory; name another one with --out")
+    here = Path.cwd()
+    if any(_same(place, target) for place in (here, *here.parents)):
+        raise OutputError(
+            f"{target}: is the working directory, or holds it, and would be replaced; name a "
+            "directory to be made with --out"
+        )
+    if not any(target.iterdir()):
+        return
+    if not overwrite:
+        raise OutputError(f"{target}: exists already; {_DIRECTORY}, or replace it with --overwrite")
+    if not contents.mark or not (target / contents.mark).is_file():
+        raise OutputError(
+            f"{target}: won't be overwritten: it holds no {contents.mark or 'older result'}, so it is "
+            "not a result of this command; remove it by hand or name another directory with --out"
+        )
+    if foreign := contents.foreign(target):
+        raise OutputError(
+            f"{target}: won't be overwritten: it holds {counted(len(foreign), 'file')} that this "
+            f"command doesn't write ({listed(foreign, _MOST_NAMED)}); move what is yours elsewhere, or "
+            f"{_DIRECTORY}"
+        )
+
+
+def _check_regular(target: Path, remedy: str) -> None:
+    """Refuse to replace a directory, device, FIFO or socket."""
+    if target.is_dir():
+        raise OutputError(f"{target}: is a directory; expected the name of a file to write")
+    with suppress(FileNotFoundError, NotADirectoryError):
+        if not stat.S_ISREG(target.stat().st_mode):
+            raise OutputError(f"{target}: is a device, pipe or socket, not a file; {remedy}")
+
+
+def _check_apart(
+    target: Path, inputs: Iterable[Path | None], remedy: str, results: Contents | None = None
+) -> None:
+    """Refuse an output that replaces an input or lies in it."""
+    place = Path(os.path.realpath(target))
+    for source in inputs:
+        if source is None or not os.path.exists(source):
+            continue
+        read = Path(os.path.realpath(source))
+        if any(_same(part, place) for part in (read, *read.parents)):
+            relation = "is" if _same(read, place) else "holds"
+            raise OutputError(
+                f"{target}: {relation} {source}, which is read and would be replaced; {remedy}"
+            )
+        around = next((part for part in place.parents if _same(part, read)), None)
+        if around and not (results and not results.has(place.relative_to(around), around)):
+            raise OutputError(f"{target}: lies in {source}, which is read; {remedy}")
+
+
+def _check_parent(target: Path, remedy: str) -> None:
+    above = next(parent for parent in target.absolute().parents if parent.exists())
+    if not above.is_dir() or not os.access(above, os.W_OK | os.X_OK):
+        reason = "may not be written to" if above.is_dir() else "is not a directory"
+        raise OutputError(f"{target}: can't be written ({above} {reason}); {remedy}")
+
+
+def _file_meant(target: Path) -> Path:
+    """The target of a symbolic link; else the path itself."""
+    return Path(os.path.realpath(target)) if target.is_symlink() else target.absolute()
+
+
+def _matches(path: PurePath, patterns: Iterable[str], directory: Path) -> bool:
+    own = escape(directory.absolute().name)
+    return any(
+        pattern.count("/") == len(path.parts) - 1 and path.match(pattern.replace("{name}", own))
+        for pattern in patterns
+        if pattern
+    )
+
+
+def _same(one: Path, other: Path) -> bool:
+    """Whether two paths lead to one file or directory, by whatever names."""
+    try:
+        return os.path.samestat(one.stat(), other.stat())
+    except OSError:
+        return one == other
+
+
+def _cannot_write(target: Path, error: OSError, remedy: str) -> OutputError:
+    kept = ""
+    with suppress(OSError):
+        kept = "; what was there is kept" if os.path.lexists(target) else ""
+    room = "free some space, or " if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
+    return OutputError(
+        f"{target}: can't be written ({error.strerror or error}){kept}; {room}{remedy}"
+    )

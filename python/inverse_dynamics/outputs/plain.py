@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results as JSON has them, plain objects, lists, texts and finite numbers; and read back from it."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, is_dataclass
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inverse_dynamics.wording import shown
+
+# What modules import for their annotations alone.
+_ARRAYS = {"Floats": NDArray[np.float64], "Integers": NDArray[np.int64], "Mask": NDArray[np.bool_]}
+
+
+def plain(value: Any) -> Any:
+    """The value of dataclasses, mappings, sequences, arrays and paths; an undefined value is None."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return plain(asdict(value))
+    if isinstance(value, dict) or hasattr(value, "items"):
+        return {str(key): plain(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(entry) for entry in value]
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return str(value) if isinstance(value, Path) else value
+
+
+def json_text(data: Any) -> str:
+    """The text of a JSON file of such a value."""
+    return json.dumps(plain(data), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def read_back(kind: Any, value: Any, where: str) -> Any:
+    """The object of a type whose JSON, or array, a value is; its parts may be such objects already.
+
+    Keys without a field are left out. Raises ValueError or TypeError where something doesn't fit.
+    """
+    origin, parts = get_origin(kind), get_args(kind)
+    if isinstance(kind, type) and isinstance(value, kind):
+        if kind is not int or not isinstance(value, bool):
+            return value
+    elif isinstance(kind, type) and is_dataclass(kind) and isinstance(value, dict):
+        hints = get_type_hints(kind, localns=_ARRAYS)
+        there = {name: hint for name, hint in hints.items() if name in value}
+        return kind(**{k: read_back(hint, value[k], f"{where}.{k}") for k, hint in there.items()})
+    elif origin in (Union, UnionType):  # X | None
+        (other,) = (part for part in parts if part is not NoneType)
+        return None if value is None else read_back(other, value, where)
+    elif origin is tuple and isinstance(value, list):
+        kinds = [parts[0]] * len(value) if parts[-1] is Ellipsis else parts
+        pairs = zip(kinds, value, strict=True)
+        return tuple(read_back(part, v, f"{where}[{k}]") for k, (part, v) in enumerate(pairs))
+    elif kind is Path and isinstance(value, str):
+        return Path(value)
+    elif kind is float and (value is None or type(value) is int):
+        return math.nan if value is None else value
+    elif origin is Literal and value in parts:
+        return value
+    elif origin is np.ndarray and isinstance(value, np.ndarray):
+        stated = np.dtype(get_args(parts[1])[0])
+        if value.dtype.kind == stated.kind:
+            return value
+    raise ValueError(f"{where}: expected {getattr(kind, '__name__', kind)}, got {shown(value)}")

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A recorded motion as arrays: time, positions, velocities, efforts, one row per message."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, get_args
+
+from inverse_dynamics.errors import BagError
+
+if TYPE_CHECKING:
+    from inverse_dynamics.arrays import Floats, Integers
+
+# Which stamps are the time: the header's, those of reception, or what is there.
+Clock = Literal["auto", "header", "receive"]
+CLOCKS: tuple[Clock, ...] = get_args(Clock)
+
+# What rosbag2 keeps messages in.
+Storage = Literal["sqlite3", "mcap"]
+STORAGES: tuple[Storage, ...] = get_args(Storage)
+
+
+def check_clock(clock: str) -> None:
+    """Raise BagError unless it is one of CLOCKS."""
+    if clock not in CLOCKS:
+        raise BagError(f"clock: expected one of {', '.join(CLOCKS)}, got '{clock}'")
+
+
+def check_storage(storage: str) -> None:
+    """Raise BagError unless it is one of STORAGES."""
+    if storage not in STORAGES:
+        raise BagError(f"storage: expected one of {', '.join(STORAGES)}, got '{storage}'")
+
+
+@dataclass(frozen=True)
+class JointLog:
+    """Joint states of one chain over time.
+
+    N messages, n joints in the order of `joint_names`; rad, rad/s, N m (prismatic m, m/s, N).
+    `effort` is as recorded, so A where it is a current: see effort_is.
+    """
+
+    joint_names: tuple[str, ...]
+    header_stamps: Integers  # (N,) ns, as the publisher wrote them
+    receive_stamps: Integers  # (N,) ns, as the recorder wrote them
+    q: Floats  # (N, n)
+    qd: Floats  # (N, n)
+    effort: Floats  # (N, n)
+    qdd: Floats | None = None  # (N, n) rad/s^2 (prismatic m/s^2), where the recording gives them
+    frame_id: str = ""
+    clock: Clock = "header"  # which of the two stamps is the time
+    topic: str = "/joint_states"
+    storage: Storage = "sqlite3"
+    effort_is: str = ""  # the meaning that the file's format states, see Effort; "": none
+    notes: tuple[str, ...] = ()  # what was left out or assumed, in words
+
+    @property
+    def stamps(self) -> Integers:
+        """(N,) ns: those stamps that are the time of the samples."""
+        return self.receive_stamps if self.clock == "receive" else self.header_stamps
+
+    @property
+    def time(self) -> Floats:
+        """(N,) s since the first sample."""
+        return self.time_at(slice(None))
+
+    def time_at(self, rows: slice | Integers) -> Floats:
+        """`time` [s] of some rows, in their shape, without those of all samples in memory."""
+        return (self.stamps[rows] - self.stamps[:1]).astype("float64") * 1e-9
+
+    @property
+    def duration(self) -> float:
+        """s, from the first sample to the last one."""
+        return float(self.stamps[-1] - self.stamps[0]) * 1e-9
+
+    def __len__(self) -> int:
+        return len(self.q)

@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A recorded motion from whatever it is stored in.
+
+    log = read_recording("recording", ["joint_1", "joint_2"])
+
+rosbag2 recordings of sensor_msgs/JointState (bags.py) or trajectory_msgs/JointTrajectory
+(joint_trajectories.py), ROS 1 recordings (ros1_bags.py), and tables: .csv, .tsv, .txt, .dat, .log,
+.asc, .parquet, .npz, .npy, .mat, data sets of LeRobot, arrays by name (tables.py, table_logs.py).
+"""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.errors import BagError
+from inverse_dynamics.progress import no_progress
+from inverse_dynamics.recordings import bags, joint_trajectories
+from inverse_dynamics.recordings.array_files import HDF5
+from inverse_dynamics.recordings.joint_log import JointLog, check_clock
+from inverse_dynamics.recordings.log_format import PLAIN, LogFormat
+from inverse_dynamics.recordings.ros1_bags import is_ros1_bag, read_ros1_log
+from inverse_dynamics.recordings.table_logs import read_named_positions, read_table_log
+from inverse_dynamics.recordings.tables import is_table, open_table
+from inverse_dynamics.recordings.vocabulary import ACCELERATION, EFFORT, POSITION, VELOCITY
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from inverse_dynamics._core import Recording
+    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.joint_log import Clock
+
+_PUBLISHED_BY = 1000  # messages: a joint that none of them has isn't published
+_PANDAS = (
+    'python -c "import pandas, sys; pandas.read_%s.to_parquet(sys.argv[2])" {path} {stem}.parquet'
+)
+_CONVERTED_BY = {  # what isn't read here, by commands that make something of it that is
+    ".xlsx": _PANDAS % "excel(sys.argv[1])",
+    ".json": _PANDAS % "json(sys.argv[1])",
+    ".jsonl": _PANDAS % "json(sys.argv[1], lines=True)",
+    ".pkl": _PANDAS % "pickle(sys.argv[1])",
+    ".feather": _PANDAS % "feather(sys.argv[1])",
+    ".h5": HDF5,
+    ".hdf5": HDF5,
+    ".gz": "gunzip -k {path}",
+    ".zip": "unzip {path}",
+}
+
+
+def read_recording(
+    path: Path | str | Mapping[str, Any],
+    joints: Sequence[str] = (),
+    *,
+    topic: str = "",
+    usual_topic: str = "",
+    clock: Clock = "auto",
+    form: LogFormat = PLAIN,
+    progress: Progress = no_progress,
+) -> JointLog:
+    """Samples of a motion: time, positions, velocities, efforts, accelerations where there are any.
+
+    Parameters
+    ----------
+    path
+        A table (.csv, .tsv, .txt, .dat, .log, .asc, .parquet, .npz, .npy, .mat), arrays by name, else a
+        recording of ROS.
+    joints
+        Names, in the order wanted; by default those of the recording.
+    topic
+        Of a bag, or several joined by +. By default usual_topic if it is there, else the only one of joint
+        states, else the only one of trajectories if there are no joint states, but other ones or several
+        together if these have all the joints alone.
+    clock
+        Which stamp of messages is the time.
+    form
+        What names don't say.
+
+    Raises
+    ------
+    UserError
+        BagError.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from inverse_dynamics import read_recording
+    >>> table = {"t": np.arange(20) / 100, "q": np.zeros((20, 3)), "tau": np.ones((20, 3))}  # s, rad, N m
+    >>> read_recording(table).effort.shape
+    (20, 3)
+    """
+    motion = open_motion(
+        path,
+        joints,
+        topic=topic,
+        usual_topic=usual_topic,
+        clock=clock,
+        form=form,
+        progress=progress,
+    )
+    if isinstance(motion, JointLog):
+        return motion
+    assert isinstance(path, (str, Path))
+    return bags.read_joint_log(path, joints, topic=motion.topic, clock=clock, progress=progress)
+
+
+def open_motion(
+    path: Path | str | Mapping[str, Any],
+    joints: Sequence[str],
+    *,
+    topic: str,
+    usual_topic: str,
+    clock: Clock,
+    form: LogFormat,
+    progress: Progress,
+) -> JointLog | bags.JointStateTopic:
+    """The samples, but for those of joint states, which may be too many for the memory.
+
+    The arguments are those of read_recording(). Joint states that a scale, a sign or gears are stated for are read.
+    """
+    path = Path(path) if isinstance(path, str) else path
+    check_clock(clock)
+    if is_table(path):
+        table = open_table(path, topic=topic, clock=clock)
+        return read_table_log(table, joints, form, progress=progress)
+    assert isinstance(path, Path)
+    if is_ros1_bag(path):
+        return read_ros1_log(path, joints, topic=topic, clock=clock, form=form, progress=progress)
+    if (command := _CONVERTED_BY.get(path.suffix.lower())) and path.is_file():
+        raise BagError(
+            f"{path}: expected a recording of ROS or a table, got {path.suffix}; convert it: "
+            f"{command.format(path=shlex.quote(f'{path}'), stem=shlex.quote(path.stem))}"
+        )
+    recording = bags.open_recording(path)
+    topics = bags.topics_of(recording)
+    types = {t.name: t.message_type for t in topics if t.message_count or t.name == topic}
+    types = types or {t.name: t.message_type for t in topics}
+    if not topic:
+        topic = recording.topics_with_joints(_topic(types, usual_topic), list(joints))
+    if types.get(topic) == joint_trajectories.MESSAGE_TYPE:
+        trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
+        log = joint_trajectories.joint_log_of(trajectories, joints, clock, topic, recording.storage)
+    elif form.scale or form.sign or form.gears:
+        log = bags.read_joint_log(path, joints, topic=topic, clock=clock, progress=progress)
+    else:
+        return bags.open_joint_states(path, topic)
+    return _scaled(log, form, f"{path}")
+
+
+def _scaled(log: JointLog, form: LogFormat, where: str) -> JointLog:
+    """The log with what is stated: other units, other signs. Raises BagError."""
+    numbers = {POSITION: log.q, VELOCITY: log.qd, EFFORT: log.effort}
+    if log.qdd is not None:
+        numbers[ACCELERATION] = log.qdd
+    numbers = form.scaled(numbers, {}, len(log.joint_names), where)
+    return replace(
+        log,
+        q=numbers[POSITION],
+        qd=numbers[VELOCITY],
+        effort=numbers[EFFORT],
+        qdd=numbers.get(ACCELERATION),
+    )
+
+
+def position_ranges(
+    path: Path | str | Mapping[str, Any],
+    joints: Sequence[str],
+    *,
+    turning: Sequence[str] = (),
+    topic: str = "",
+    usual_topic: str = "",
+    form: LogFormat = PLAIN,
+) -> dict[str, tuple[float, float, float]]:
+    """Least, mean and greatest position of those of the joints that the recording has, by name.
+
+    turning: joints of which whole turns don't count: positions are those nearest to the first one.
+    Positions that aren't finite are left out. topic, usual_topic: as for read_recording(). Of joint states
+    only. Raises BagError.
+    """
+    path = Path(path) if isinstance(path, str) else path
+    found: dict[str, tuple[float, float, float]] = {}
+    first: dict[str, float] = {}
+    counts: dict[str, int] = {}
+    for names, positions in _positions(path, joints, topic, usual_topic, form):
+        for name in filter(names.__contains__, joints):
+            q = positions[:, names.index(name)]
+            q = q[np.isfinite(q)]
+            if not len(q):
+                continue
+            if name in turning:
+                q = q - 2 * np.pi * np.round(
+                    (q - first.setdefault(name, float(q[0]))) / (2 * np.pi)
+                )
+            least, mean, greatest = found.get(name, (np.inf, 0.0, -np.inf))
+            count = counts[name] = counts.get(name, 0) + len(q)
+            mean += float((q - mean).sum()) / count
+            found[name] = (min(least, float(q.min())), mean, max(greatest, float(q.max())))
+    return found
+
+
+def _positions(
+    path: Path | Mapping[str, Any],
+    joints: Sequence[str],
+    topic: str,
+    usual_topic: str,
+    form: LogFormat,
+) -> Iterator[tuple[tuple[str, ...], Floats]]:
+    """Names, and positions of them in some messages, until it shows that none is of the joints."""
+    if is_table(path):
+        found = read_named_positions(open_table(path), joints, form)
+        if found:
+            yield tuple(found), np.column_stack([*found.values()])
+        return
+    assert isinstance(path, Path)
+    factors = form.factors(f"{path}").get(POSITION, np.ones(1))
+    if len(factors) > 1:  # of the chain's joints
+        return
+    if is_ros1_bag(path):
+        log = read_ros1_log(path, topic=topic)
+        yield log.joint_names, factors * log.q
+        return
+    recording = bags.open_recording(path)
+    there = {t.name: t for t in bags.topics_of(recording) if t.message_type == bags.MESSAGE_TYPE}
+    usual = [usual_topic] if usual_topic in there else there
+    for name in topic.split("+") if topic else usual:
+        if name in there:
+            for names, positions in _positions_of_topic(recording, name, joints):
+                yield names, factors * positions
+
+
+def _positions_of_topic(
+    recording: Recording, topic: str, joints: Sequence[str]
+) -> Iterator[tuple[tuple[str, ...], Floats]]:
+    messages, published = 0, False
+    for block in recording.joint_states(topic):
+        names, positions = block[0], block[4]
+        if positions.shape[1:] == (len(names),):
+            yield names, positions
+        messages += len(positions)
+        published = published or not set(joints).isdisjoint(names)
+        if messages > _PUBLISHED_BY and not published:
+            return
+
+
+def _topic(types: dict[str, str], usual: str) -> str:
+    """The usual topic, else the only one of joint states, else that of trajectories."""
+    if usual in types:
+        return usual
+    for message_type in (bags.MESSAGE_TYPE, joint_trajectories.MESSAGE_TYPE):
+        found = [name for name, kind in types.items() if kind == message_type]
+        if found:
+            return found[0] if len(found) == 1 else usual
+    return usual

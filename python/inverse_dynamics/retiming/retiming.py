@@ -1,0 +1,466 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The fastest motion along a path within the torque limits of the joints.
+
+    fastest = retime([[0, -1.5, 1, 0, 0, 0], [1, -1, 0.5, 0, 0.5, 0]], "ur10_real")
+    print(fastest.duration, fastest.seconds_saved)
+
+The method is that of the C++ header inverse_dynamics_timing/retime.hpp: docs/retime.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics._core import (
+    JointPath,
+    MotionLimits,
+    RetimeOptions,
+    retime_path,
+    speed_limit,
+    torque_band,
+)
+from inverse_dynamics.arguments import checked
+from inverse_dynamics.errors import BagError, UserError
+from inverse_dynamics.evaluation.motion_energy import MotionEnergy
+from inverse_dynamics.recordings.csv_table import is_csv
+from inverse_dynamics.recordings.joint_trajectories import read_joint_trajectories
+from inverse_dynamics.recordings.log_format import LogFormat
+from inverse_dynamics.recordings.table_logs import read_motion
+from inverse_dynamics.recordings.tables import open_table
+from inverse_dynamics.recordings.vocabulary import POSITION
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.located_yaml import read_mapping
+from inverse_dynamics.robots.robots import Robot, load_robot
+from inverse_dynamics.wording import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+    from inverse_dynamics._core import Solver, TimedPath
+    from inverse_dynamics.arrays import Floats, Integers
+
+_UNLIMITED = 1e6  # N m, rad/s: beyond every joint
+_OF_MOTORS = ("knee_velocity", "no_load_velocity")
+PER_JOINT = ("torque", "velocity", "acceleration", "jerk", *_OF_MOTORS)
+_ABOUT_ONE = 0.998  # share of torque limits from which on the compared acceleration is good enough
+_AIM = 0.999  # the share that its search aims at
+_MOST_STEPS = 12  # of its search
+_WEIGHING_RATE = 250.0  # Hz, of samples for energies
+_SLOWEST = 0.05  # share of the fastest motion's velocities
+_SECTIONS = 9  # of the search: the share is known to 3 %, the sum to far less
+_STILL = 1e-6  # rad/s
+_CLOSE = 0.5  # rad, between the samples of a recorded path
+_LEAST = 1e-9  # N m, of a limit
+_PLACES = 1001  # of a path, at which positions are checked
+_ROUNDING = 1e-6  # rad
+_AT_LIMIT = 0.99  # of a limit: the joint counts as being at it
+
+
+@dataclass(frozen=True)
+class Retimed:
+    """A path with the shortest time. N samples, n joints in the order of the chain; SI units."""
+
+    robot: Robot
+    joint_names: tuple[str, ...]  # as recorded
+    units: tuple[str, ...]
+    limits: MotionLimits
+    time: Floats  # (N,) s
+    q: Floats  # (N, n) rad
+    qd: Floats  # (N, n) rad/s
+    qdd: Floats  # (N, n) rad/s^2
+    efforts: Floats  # (N, n) N m
+    band: Floats  # (n,) N m, half the width that --margin keeps free
+    timed: TimedPath  # the motion on its grid
+    speed_limit: Floats  # (K,) of the grid: ds/dt that limits allow for an instant
+    energy: MotionEnergy
+    by_acceleration: TimedPath | None  # the same path, one acceleration limit for all joints
+    acceleration: float  # rad/s^2, that limit: the greatest under which torques keep to theirs
+    notes: tuple[str, ...] = ()
+
+    @property
+    def duration(self) -> float:
+        """Of the motion, s."""
+        return float(self.timed.duration)
+
+    @property
+    def seconds_saved(self) -> float:
+        """Against the same path under the best constant acceleration limit; NaN: there is none."""
+        return self.by_acceleration.duration - self.duration if self.by_acceleration else np.nan
+
+    @property
+    def use(self) -> Floats:
+        """(N, n) torque over what it may be, signed."""
+        used: Floats = self.efforts / np.maximum(self.torque_limit - self.band, _LEAST)
+        return used
+
+    @property
+    def torque_limit(self) -> Floats:
+        """(N, n) N m; less at speed where the motors' torque falls."""
+        return torque_limit(self.limits, self.qd)
+
+    @property
+    def at_limit(self) -> Floats:
+        """(n,) share of the time that each joint's torque is at its limit."""
+        share: Floats = (np.abs(self.use) > _AT_LIMIT).mean(axis=0)
+        return share
+
+    @property
+    def limiting(self) -> Integers:
+        """(N,) the joint whose torque is at its limit, of several the one nearest to it; -1: none is."""
+        use = np.abs(self.use)
+        return np.where(use.max(axis=1) > _AT_LIMIT, use.argmax(axis=1), -1)
+
+    def plot(self) -> Any:
+        """The figure of retime_figure(), of matplotlib."""
+        from inverse_dynamics.retiming.figure import retime_figure
+
+        return retime_figure(self)
+
+
+@checked
+def retime(
+    path: JointPath | Path | str | ArrayLike,
+    robot: Robot | Path | str,
+    limits: MotionLimits | None = None,
+    *,
+    topic: str = "",
+    deviation: float | None = None,
+    stops: Sequence[int] = (),
+    options: RetimeOptions | None = None,
+    weight: float = 0.0,
+    rate: float = 250.0,
+) -> Retimed:
+    """Time a path so that it takes as little as the limits allow.
+
+    Parameters
+    ----------
+    path
+        Waypoints (m, n) [rad]; a file of them: trajectory_msgs/JointTrajectory of a recording, a table, or a
+        YAML file with `joints` and `positions`, times ignored; or a JointPath. A continuous joint turns as
+        far as the numbers say; in a table recorded within one turn, steps over the seam are short.
+    robot
+        As evaluate() takes it.
+    limits
+        Torques and velocities that aren't among them are those of the robot description.
+    deviation
+        Straight lines whose corners the path passes by at most this distance [rad]; by default a cubic
+        spline through all waypoints.
+    stops
+        Numbers of waypoints, from 0, to stand still at.
+    weight
+        s/J. Above 0 the motion is slower and minimises about duration + weight * energy.
+    rate
+        Of the samples, Hz.
+
+    Raises
+    ------
+    UserError
+        BagError, RobotError, SolverError; the path leaves a joint's range, or can't be held.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from inverse_dynamics import retime
+    >>> fast = retime(np.array([[0.0] * 6, [0.5] * 6]), "ur10_simulated")
+    >>> bool(fast.duration < 2), fast.efforts.shape[1]  # s
+    (True, 6)
+    """
+    if not isinstance(robot, Robot):
+        robot = load_robot(robot)
+    if not rate > 0.0:
+        raise UserError(f"rate: expected a number above zero, Hz, got {rate:g}")
+    if not 0.0 <= weight < np.inf:
+        raise UserError(f"weight: expected a finite number, s/J, at least zero, got {weight:g}")
+    arm = Arm(robot)
+    options = options or RetimeOptions()
+    limits = described_limits(arm, robot, limits)
+    notes = [*arm.solver.warnings, *_notes_of_velocities(arm, limits)]
+    if not isinstance(path, JointPath):
+        waypoints = waypoints_of(path, robot, arm, topic)
+        if isinstance(path, Path | str) and is_csv(Path(path)):
+            waypoints, seams = _unwrapped(waypoints, arm)
+            notes += seams
+        path = (
+            JointPath.spline(waypoints, list(stops))
+            if deviation is None
+            else JointPath.lines(waypoints, deviation, list(stops))
+        )
+    _check_positions(path, arm, robot)
+    fastest = retime_path(arm.solver, path, limits, options)
+    acceleration, by_acceleration = _by_acceleration(arm.solver, fastest, limits, options)
+    timed = fastest
+    if len(limits.jerk) and by_acceleration:  # neither of them is the fastest of all
+        timed = min(fastest, by_acceleration, key=lambda one: one.duration)
+    if weight > 0.0:
+        timed = _weighted(arm.solver, timed, limits, options, weight)
+    time = sample_times(timed.duration, rate)
+    q, qd, qdd = timed.states(time)
+    efforts = arm.solver.torques(q, qd, qdd)
+    return Retimed(
+        robot=robot,
+        joint_names=arm.recorded_names,
+        units=arm.units,
+        limits=limits,
+        time=time,
+        q=q,
+        qd=qd,
+        qdd=qdd,
+        efforts=efforts,
+        band=torque_band(arm.solver, options.margin),
+        timed=timed,
+        speed_limit=speed_limit(arm.solver, timed, limits, options),
+        energy=MotionEnergy.of(arm.solver, time, q, qd, efforts),
+        by_acceleration=by_acceleration,
+        acceleration=acceleration,
+        notes=tuple(notes),
+    )
+
+
+def torque_limit(limits: MotionLimits, qd: Floats) -> Floats:
+    """(N, n) N m, of joints at velocities (N, n)."""
+    knee, none = limits.knee_velocity, limits.no_load_velocity
+    share = (
+        np.clip((none - np.abs(qd)) / (none - knee), 0.0, 1.0) if len(knee) else np.ones_like(qd)
+    )
+    return limits.torque * share
+
+
+def sample_times(duration: float, rate: float) -> Floats:
+    """0 to the duration, both included, `rate` per second and the last interval shorter."""
+    return np.append(np.arange(0.0, duration, 1.0 / rate), duration)
+
+
+def described_limits(arm: Arm, robot: Robot, given: MotionLimits | None = None) -> MotionLimits:
+    """Limits with those of torque and velocity that aren't given from the robot description.
+
+    One number stands for all joints. Raises UserError where a joint has no torque limit.
+    """
+    given = given or MotionLimits()
+    joints = arm.solver.joint_names
+    found = {}
+    for name in PER_JOINT:
+        values = getattr(given, name)
+        if len(values) not in (0, 1, len(joints)):
+            raise UserError(
+                f"{name} limits: expected 1 number or {len(joints)}, one per joint ({', '.join(joints)}), "
+                f"got {len(values)}"
+            )
+        found[name] = np.resize(values, len(joints)) if len(values) else values
+    for name, limit in (("torque", "effort"), ("velocity", "velocity")):
+        if not len(found[name]):
+            found[name] = np.minimum(arm.limit(limit, np.inf), _UNLIMITED)
+    lacking = [j for j, torque in zip(joints, found["torque"], strict=True) if torque == _UNLIMITED]
+    if lacking:
+        raise UserError(
+            f"torque limits: expected one for each joint, got none for {', '.join(lacking)} in "
+            f"{robot.urdf or robot.model or 'the robot, which has no description'}; give them with --torque"
+        )
+    return MotionLimits(**found, tip_speed=given.tip_speed)
+
+
+def _notes_of_velocities(arm: Arm, limits: MotionLimits) -> list[str]:
+    free = [j for j, v in zip(arm.joint_names, limits.velocity, strict=True) if v >= _UNLIMITED]
+    return [
+        f"the velocity of {', '.join(free)} isn't limited: the robot's description states no limit, or 0; "
+        "give --velocity"
+    ] * bool(free)
+
+
+def _check_positions(path: JointPath, arm: Arm, robot: Robot) -> None:
+    """Raise UserError where the path leaves the joints' ranges."""
+    q, _, _ = path.states(np.linspace(path.knots[0], path.knots[-1], _PLACES))
+    lower, upper = arm.limit("lower", -np.inf), arm.limit("upper", np.inf)
+    for j, joint in enumerate(arm.joint_names):
+        least, most = q[:, j].min(), q[:, j].max()
+        if least < lower[j] - _ROUNDING or most > upper[j] + _ROUNDING:
+            raise UserError(
+                f"path: joint {joint}: expected positions from {lower[j]:g} to {upper[j]:g}, the limits in "
+                f"{robot.urdf or robot.model}, got {least:.4g} to {most:.4g}; change the path, and if waypoints are in "
+                "degrees, convert them (of a table: --scale q=deg)"
+            )
+
+
+def waypoints_of(path: Path | str | ArrayLike, robot: Robot, arm: Arm, topic: str) -> Floats:
+    """(m, n) rad, in the order of the chain. Raises UserError."""
+    if not isinstance(path, Path | str):
+        waypoints = np.asarray(path, dtype=np.float64)
+        if waypoints.ndim != 2 or waypoints.shape[1] != len(arm.joint_names):
+            raise UserError(
+                f"path: expected waypoints (m, {len(arm.joint_names)}), one per row, got an array "
+                f"{waypoints.shape}"
+            )
+        return waypoints
+    path = Path(path)
+    found = _waypoints_of_file(path, robot, arm, topic)
+    if len(found) < 2:
+        raise BagError(f"{path}: expected two waypoints at least, got {len(found)}")
+    return found
+
+
+def _waypoints_of_file(path: Path, robot: Robot, arm: Arm, topic: str) -> Floats:
+    if path.suffix in (".yaml", ".yml"):
+        return _waypoints_of_yaml(path, arm.joint_names)
+    if is_csv(path):
+        form = replace(LogFormat.of(robot), rate=1.0)  # without a column of time: it is ignored
+        table = open_table(path, topic=topic)
+        motion = read_motion(table, arm.recorded_names, form, (POSITION,))
+        if table.incomplete:
+            raise BagError(
+                f"{path}: expected a number for each joint in each row, got {table.incomplete} of "
+                f"{table.incomplete + len(motion.time)} rows without; complete or remove them"
+            )
+        return motion.numbers[POSITION]
+    trajectories = [each for each in read_joint_trajectories(path, topic) if len(each)]
+    if len(trajectories) > 1 and max(map(len, trajectories)) > 1:
+        raise BagError(
+            f"{trajectories[0].where.rpartition(',')[0]}: expected one trajectory, or messages of one point "
+            f"each, got {len(trajectories)} messages with {', '.join(f'{len(t)}' for t in trajectories[:9])} "
+            "points: it isn't known which of them are the path; record one alone"
+        )
+    return np.concatenate([t.numbers("positions", arm.recorded_names) for t in trajectories])
+
+
+def _waypoints_of_yaml(path: Path, joints: Sequence[str]) -> Floats:
+    top = read_mapping(path, BagError)
+    names = [entry.text() for entry in top.required("joints").entries()]
+    if sorted(names) != sorted(joints):
+        raise BagError(
+            f"{path}: joints: expected {', '.join(joints)}, got {', '.join(names)}; name the joints of the chain"
+        )
+    positions = top.required("positions")
+    if (kind := top.optional("kind")) is not None:
+        kind.text(("waypoints",))
+    for ignored in ("schema", "times", "source", "rests"):
+        top.optional(ignored)
+    top.reject_others()
+    rows = [[number.number() for number in row.entries()] for row in positions.entries()]
+    if any(len(row) != len(names) for row in rows):
+        positions.fail(f"rows of {len(names)} numbers, one per joint")
+    return np.array(rows).reshape(-1, len(names))[:, [names.index(joint) for joint in joints]]
+
+
+def _unwrapped(waypoints: Floats, arm: Arm) -> tuple[Floats, list[str]]:
+    """Recorded positions of continuous joints beyond the seam of a driver that reports them within one turn.
+
+    Recorded samples lie close together, but for a step of nearly a whole turn at the seam.
+    """
+    found, notes = waypoints.copy(), []
+    for j, kind in enumerate(arm.solver.joint_types):
+        q = waypoints[:, j]
+        steps = np.abs(np.diff(q))
+        seams = np.abs(steps - 2 * np.pi) < _CLOSE
+        recorded = np.ptp(q) < 2 * np.pi + _ROUNDING and ((steps < _CLOSE) | seams).all()
+        if kind == "continuous" and recorded and 0 < 2 * seams.sum() < len(steps):
+            found[:, j] = np.unwrap(q)
+            notes.append(
+                f"{arm.joint_names[j]} goes on over the seam of its turn in {counted(int(seams.sum()), 'place')}"
+            )
+    return found, notes
+
+
+def _changed(limits: MotionLimits, **changes: Floats) -> MotionLimits:
+    """A copy with other limits."""
+    names = (*PER_JOINT, "tip_speed")
+    return MotionLimits(**{**{name: getattr(limits, name) for name in names}, **changes})
+
+
+def _weighted(
+    solver: Solver,
+    fastest: TimedPath,
+    limits: MotionLimits,
+    options: RetimeOptions,
+    weight: float,
+) -> TimedPath:
+    """The motion of least duration + weight * energy among those that cap velocities.
+
+    Each joint keeps below one share, the same for all, of its greatest velocity in the fastest motion.
+    """
+    time = sample_times(fastest.duration, _WEIGHING_RATE)
+    greatest = np.maximum(np.abs(fastest.states(time)[1]).max(axis=0), _STILL)
+
+    def total(timed: TimedPath) -> float:
+        time = sample_times(timed.duration, _WEIGHING_RATE)
+        states = timed.states(time)
+        energy = MotionEnergy.of(solver, time, *states[:2], solver.torques(*states))
+        return float(timed.duration) + weight * energy.driven
+
+    def weighed(exponent: float) -> tuple[float, TimedPath]:
+        capped = _changed(limits, velocity=greatest * np.exp(exponent))
+        try:
+            timed = retime_path(solver, fastest.path, capped, options)
+        except UserError:  # a place that can't be passed that slowly
+            return np.inf, fastest
+        return total(timed), timed
+
+    # golden section search for the logarithm of the share
+    low, high = np.log(_SLOWEST), 0.0
+    ratio = (np.sqrt(5.0) - 1.0) / 2.0
+    places = [high - ratio * (high - low), low + ratio * (high - low)]
+    found = [weighed(place) for place in places]
+    best = min((total(fastest), fastest), *found, key=lambda one: one[0])
+    for _ in range(_SECTIONS):
+        left = found[0][0] < found[1][0]
+        low, high = (low, places[1]) if left else (places[0], high)
+        new = high - ratio * (high - low) if left else low + ratio * (high - low)
+        tried = weighed(new)
+        places = [new, places[0]] if left else [places[1], new]
+        found = [tried, found[0]] if left else [found[1], tried]
+        best = min(best, tried, key=lambda one: one[0])
+    return best[1]
+
+
+def _by_acceleration(
+    solver: Solver, fastest: TimedPath, limits: MotionLimits, options: RetimeOptions
+) -> tuple[float, TimedPath | None]:
+    """The greatest acceleration limit, the same for all joints, under which torques hold, and its motion.
+
+    Torques are about linear in it, so the search interpolates: by false position [Illinois algorithm].
+    """
+    band = torque_band(solver, options.margin)
+    n = len(solver.joint_names)
+    own = limits.acceleration if len(limits.acceleration) else np.full(n, np.inf)
+    unlimited = _changed(
+        limits, torque=np.full(n, _UNLIMITED), **dict.fromkeys(_OF_MOTORS, np.zeros(0))
+    )
+    speeds = {"start_speed": options.start_speed, "end_speed": options.end_speed}
+    grid = RetimeOptions(points=options.points, **speeds)
+    grid_times = (fastest.time[1:] + fastest.time[:-1]) / 2
+
+    def use(q: Floats, qd: Floats, qdd: Floats) -> float:
+        room = np.maximum(torque_limit(limits, qd) - band, _LEAST)
+        return float((np.abs(solver.torques(q, qd, qdd)) / room).max())
+
+    def motion(acceleration: float) -> tuple[float, TimedPath | None]:
+        common = _changed(unlimited, acceleration=np.minimum(own, acceleration))
+        try:
+            timed = retime_path(solver, fastest.path, common, grid)
+        except UserError:  # a speed at an end is too high
+            return np.inf, None
+        middles = (timed.time[1:] + timed.time[:-1]) / 2
+        return use(*timed.states(np.sort(np.append(timed.time, middles)))), timed
+
+    q, qd, qdd = fastest.states(grid_times)
+    low, low_use = 0.0, use(q, _STILL * qd, np.zeros_like(q))
+    high = float(np.abs(qdd).max())
+    high_use, timed = motion(high)
+    if high_use <= 1.0 or low_use > 1.0 or timed is None:
+        return (high, timed) if high_use <= 1.0 else (np.nan, None)
+    found: tuple[float, TimedPath | None] = (np.nan, None)
+    for _ in range(_MOST_STEPS):
+        middle = low + (high - low) * (_AIM - low_use) / (high_use - low_use)
+        middle_use, timed = motion(middle)
+        if middle_use <= 1.0:
+            low, low_use, found = middle, middle_use, (middle, timed)
+            high_use = 1.0 + (high_use - 1.0) / 2
+        else:
+            high, high_use = middle, middle_use
+            low_use = 1.0 - (1.0 - low_use) / 2
+        if timed is None or _ABOUT_ONE < middle_use <= 1.0:
+            break
+    return found

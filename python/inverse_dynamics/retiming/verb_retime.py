@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids retime`: the fastest motion along a path within torque limits."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.errors import UserError
+from inverse_dynamics.terminal.options import SOLVER, TABLE, Options, chosen_robot, given_overrides
+from inverse_dynamics.terminal.values import numbers, positive_number, share, whole_numbers
+
+if TYPE_CHECKING:
+    import argparse
+
+GROUP = "plan"
+SUMMARY = "time a path within torque limits"
+EPILOG = """\
+examples:
+  ids retime waypoints.yaml --robot ur10_real --out fast
+      a YAML file of waypoints (docs/retime.md), a table with columns position.JOINT, or a
+      recording of trajectory_msgs/JointTrajectory; times are ignored
+
+  ids retime picks.csv --robot ur10_real --deviation 0.05 --payload 3 --out fast
+      straight lines that pass the waypoints by at most 0.05 rad, with 3 kg at the tip
+
+  ids retime planned --robot my_robot.yaml --margin 0.95 --out fast
+      the band that holds 95 % of measured torques stays within limits
+
+The output directory is a recording of the trajectory with efforts; beside it a table, numbers, a
+figure, and report.html: the robot moving beside itself under one acceleration limit. Limits of
+torque and velocity are those of the robot description unless they are given.
+"""
+
+
+def declare(options: Options) -> None:
+    """Arguments and options."""
+    options.argument(
+        "path",
+        metavar="PATH",
+        type=Path,
+        help="waypoints: a YAML file, a table, or a recording of trajectory_msgs/JointTrajectory",
+    )
+    options.robot()
+    options.output("DIR", "directory of the result", required=True, replaces=True)
+    options.figures()
+    way = options.group("the path")
+    way.add(
+        "--deviation RAD",
+        "straight lines, passing waypoints by at most this; 0: it stops there",
+        _distance,
+    )
+    way.add("--stops K,K,...", "waypoints to stand still at, from 0", whole_numbers, default=())
+    way.add(
+        "--start-speed SPEED",
+        "rad/s at its start: the root of the sum of squares over the joints",
+        positive_number,
+    )
+    way.add("--end-speed SPEED", "and at its end", positive_number)
+    limits = options.group("limits, one for all joints or one for each")
+    limits.add("--torque A,B,...", "N m (default: of the robot description)", numbers)
+    limits.add("--velocity A,B,...", "rad/s (default: of the robot description)", numbers)
+    limits.add("--acceleration A,B,...", "rad/s^2", numbers)
+    limits.add("--jerk A,B,...", "rad/s^3", numbers)
+    limits.add("--knee-velocity A,B,...", "rad/s, above it torque limits fall in a line", numbers)
+    limits.add("--no-load-velocity A,B,...", "rad/s, there they are zero", numbers)
+    limits.add("--tip-speed M/S", "speed of the tip, m/s", positive_number)
+    limits.add("--margin SHARE", "of measured torques that stay within limits: 0.95", share)
+    options.add(
+        "--weight S/J",
+        "minimise about duration + weight * energy: slower, less energy",
+        positive_number,
+    )
+    options.shared("--json", "--topic")
+    options.overrides(*SOLVER, *TABLE)
+
+
+def _distance(text: str) -> float:
+    return 0.0 if text.strip() == "0" else positive_number(text)
+
+
+def _of_options(text: str) -> str:
+    """The text of an error of retime(), with the names of options."""
+    return re.sub(
+        r"retime\(\): (?:limits|options)\.(\w+)", lambda m: "--" + m[1].replace("_", "-"), text
+    )
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.outputs.files import check_output_directory
+    from inverse_dynamics.retiming.files import CONTENTS
+    from inverse_dynamics.robots.robots import with_changes
+
+    robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
+    inputs = (arguments.path, *robot.files)
+    check_output_directory(
+        arguments.out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs
+    )
+
+    from inverse_dynamics._core import MotionLimits, RetimeOptions
+    from inverse_dynamics.retiming.files import PAGE, summary, write_retimed
+    from inverse_dynamics.retiming.retiming import PER_JOINT, retime
+    from inverse_dynamics.retiming.tables import retime_table
+    from inverse_dynamics.terminal.screen import show, title
+    from inverse_dynamics.terminal.tables import on_screen
+
+    given = {name: getattr(arguments, name) for name in PER_JOINT if getattr(arguments, name)}
+    if arguments.tip_speed:
+        given["tip_speed"] = arguments.tip_speed
+    try:
+        result = retime(
+            arguments.path,
+            robot,
+            MotionLimits(**given),
+            topic=arguments.topic or "",
+            deviation=arguments.deviation,
+            stops=arguments.stops,
+            weight=arguments.weight or 0.0,
+            options=RetimeOptions(
+                margin=arguments.margin or 0.0,
+                start_speed=arguments.start_speed or 0.0,
+                end_speed=arguments.end_speed or 0.0,
+            ),
+        )
+    except UserError as error:
+        raise type(error)(_of_options(f"{error}")) from error
+    write_retimed(
+        result,
+        arguments.out,
+        overwrite=arguments.overwrite,
+        figures=arguments.figures,
+        inputs=inputs,
+    )
+    by_acceleration = [
+        f"{other.duration:.3f} s with at most {result.acceleration:.3g} rad/s^2 in each joint, torques within "
+        "limits"
+        for other in (result.by_acceleration,)
+        if other is not None
+    ]
+    show(
+        arguments,
+        summary(result),
+        [arguments.out],
+        [
+            title(robot),
+            ("duration", f"{result.duration:.3f} s"),
+            ("by acceleration", by_acceleration),
+            ("energy", str(result.energy)),
+            ("note", result.notes),
+            on_screen(retime_table(result)),
+            ("page", arguments.out / PAGE),
+            ("written", arguments.out),
+        ],
+    )

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The arm of a run configuration: its solver, the names and units of its joints, its limits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.robots.chain_geometry import chain_geometry, model_limits
+from inverse_dynamics.robots.descriptions import parse_description, read_description
+from inverse_dynamics.robots.robots import RIGID_BODY, Robot
+from inverse_dynamics.robots.solvers import open_solver
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from inverse_dynamics._core import Solver
+    from inverse_dynamics.arrays import Floats
+
+
+class Arm:
+    """The arm of a run configuration, before a recording is read. Raises UserError."""
+
+    def __init__(self, robot: Robot) -> None:
+        from inverse_dynamics import _core
+
+        description = "" if robot.urdf is None else read_description(robot.urdf)
+        self.description = description
+        self.solver = open_solver(robot, description)
+        self.joint_names = tuple(self.solver.joint_names)
+        self.recorded_names = tuple(_core.recorded_names(robot, list(self.joint_names)))
+        _core.effort_options(robot, self.solver)  # drive gains that don't fit are refused
+        if description:
+            parse_description(description, robot.urdf)  # also where the solver doesn't read it
+        self.units = tuple(
+            "N" if kind == "prismatic" else "N m" for kind in self.solver.joint_types
+        )
+        self.robot = robot
+
+    def limit(self, name: str, absent: float) -> Floats:
+        """(n,) of `lower`, `upper`, `velocity` or `effort`: the description's, or without one the model's."""
+        robot = self.robot
+        limits: Sequence[Mapping[str, float]] = [{}] * len(self.joint_names)
+        if self.description:
+            chain = chain_geometry(self.description, robot.root, self.joint_names)
+            limits = [joint.limits for joint in chain]
+        elif robot.model is not None:
+            limits = model_limits(robot.model)
+        return np.array([of_joint.get(name, absent) for of_joint in limits])
+
+    @cached_property
+    def subtracted(self) -> Solver:
+        """The solver whose gravity efforts without gravity lack: of an identified model, the description's.
+
+        The robot subtracts what its maker computes, which nobody measures with such efforts.
+        """
+        robot = self.robot
+        if robot.model is None or robot.urdf is None or robot.plugin != RIGID_BODY:
+            return self.solver
+        return open_solver(replace(robot, model=None, friction=False), self.description)

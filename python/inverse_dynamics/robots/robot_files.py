@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A robot as the file of a run configuration (docs/add_a_robot.md), with a comment on each key.
+
+write_robot(robot_of_description("arm.urdf"), Path("arm.yaml"))
+"""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.errors import OutputError, PackageNotFoundError
+from inverse_dynamics.installation.ament import package_share
+from inverse_dynamics.outputs.files import check_output_file, write_text_whole
+from inverse_dynamics.outputs.yaml_text import yaml_list, yaml_number, yaml_text
+
+if TYPE_CHECKING:
+    from inverse_dynamics.robots.robots import Robot
+
+
+def write_robot(robot: Robot, file: Path, *, overwrite: bool = False) -> None:
+    """Write the run configuration, whole or not at all. Raises OutputError."""
+    if file.suffix not in (".yaml", ".yml"):
+        raise OutputError(f"{file}: expected a name ending in .yaml, as --robot takes it")
+    check_output_file(file, overwrite=overwrite, option="--new", inputs=robot.files)
+    write_text_whole(file, robot_text(robot, file))
+
+
+def robot_text(robot: Robot, file: Path) -> str:
+    """The text of the file, with paths relative to it. What isn't stated is a comment."""
+    names = f"[{', '.join(map(yaml_text, robot.joints))}]"
+    lines = [
+        "# SPDX-License-Identifier: Apache-2.0",
+        "#",
+        "# Run configuration. All keys: docs/add_a_robot.md.",
+        "#",
+        f"#     ids evaluate RECORDING --robot {file.name}",
+        "",
+        "schema: 1",
+        f"name: {yaml_text(robot.name)}",
+        f"description: {yaml_text(robot.description)}",
+        f"plugin: {robot.plugin}  # `ids robots --plugins` lists the others",
+        *_path("urdf", robot.urdf, file),
+        *_path("model", robot.model, file),
+        _key("root", yaml_text(robot.root), "first link of the chain", stated=bool(robot.root)),
+        _key("tip", yaml_text(robot.tip), "last link of the chain", stated=bool(robot.tip)),
+        _key(
+            "gravity",
+            yaml_list(robot.gravity or (0.0, 0.0, -9.81)),
+            "m/s^2, in the frame of the root",
+            stated=robot.gravity is not None,
+        ),
+        _key("topic", yaml_text(robot.topic or "/joint_states"), "of recordings", stated=bool(robot.topic)),
+        _key("joints", names, "names in the recording, in the order of the chain", stated=bool(robot.joints)),
+        _key("friction", str(robot.friction).lower(), "whether the solver's friction counts"),
+        _key("effort", robot.effort, "torque, current, torque_without_gravity, or auto: found from the data"),
+        _key(
+            "drive_gains",
+            yaml_list(robot.drive_gains or (1.0,)),
+            "N m/A of each joint, where efforts are currents",
+            stated=bool(robot.drive_gains),
+        ),
+        *_table(robot),
+        "accelerations:",
+        f"  method: {robot.accelerations}",
+        _key(
+            "  cutoff", yaml_number(robot.cutoff or 10.0), "Hz; else chosen from the data",
+            stated=robot.cutoff is not None,
+        ),
+    ]  # fmt: skip
+    if robot.source:
+        lines.append(f"source: {yaml_text(robot.source)}")
+    return "\n".join(lines) + "\n"
+
+
+def _key(key: str, value: str, meaning: str, *, stated: bool = True) -> str:
+    return f"{'' if stated else '# '}{key}: {value}  # {meaning}"
+
+
+def _path(key: str, path: Path | None, file: Path) -> list[str]:
+    if path is None:
+        return []
+    return [f"{key}: {yaml_text(reference(path, file.parent))}"]
+
+
+def reference(path: Path, directory: Path) -> str:
+    """A file as a run configuration in a directory names it: by its package, else by a relative path."""
+    place = path.resolve()
+    for share in place.parents:
+        with suppress(PackageNotFoundError):
+            if share.parent.name == "share" and package_share(share.name).resolve() == share:
+                return f"package://{place.relative_to(share.parent)}"
+    return os.path.relpath(place, directory.resolve())
+
+
+def _table(robot: Robot) -> list[str]:
+    """How tables are read: docs/tables.md."""
+    scale = f"[{', '.join(map(yaml_text, robot.scale))}]"
+    rows = [
+        _key("  columns", yaml_text(robot.columns), "which is what", stated=bool(robot.columns)),
+        _key("  scale", scale, "factors to SI units", stated=bool(robot.scale)),
+        _key("  sign", yaml_list(robot.sign), "1 or -1 for each joint", stated=bool(robot.sign)),
+        _key(
+            "  rate",
+            yaml_number(robot.rate or 0.0),
+            "Hz, without a time",
+            stated=robot.rate is not None,
+        ),
+    ]
+    gears = yaml_list(robot.gears)
+    rows.append(_key("  gears", gears, "of recorded motors", stated=bool(robot.gears)))
+    used = any((robot.columns, robot.scale, robot.sign, robot.rate, robot.gears))
+    return ["table:", *(row for row in rows if not row.startswith("# "))] if used else []

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Verbs print results on standard output, as text or JSON, and progress on standard error."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from inverse_dynamics.outputs.plain import plain
+from inverse_dynamics.terminal.help_text import filled
+from inverse_dynamics.wording import message, printable
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from rich.console import ConsoleOptions, RenderableType
+    from rich.segment import Segment
+
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.progress import Progress
+    from inverse_dynamics.robots.robots import Robot
+
+    Line = RenderableType | tuple[str, str | Path | Iterable[object]]
+
+SCHEMA = 3  # of the object of --json; docs/command_line.md
+_FIRST_LINE = 10.0  # s
+
+
+class Screen(Console):
+    """Standard output, or standard error: lines stay whole, control characters become escapes."""
+
+    def __init__(
+        self, *, stderr: bool = False, soft_wrap: bool = True, width: int | None = None
+    ) -> None:
+        super().__init__(
+            stderr=stderr, soft_wrap=soft_wrap, width=width, highlight=False, markup=False
+        )
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterable[Segment]:
+        """Every text passes here."""
+        for segment in super().render(renderable, options):
+            yield segment if segment.control else segment._replace(text=printable(segment.text))
+
+    def on_broken_pipe(self) -> None:
+        """The reader has gone: cli.py ends the program."""
+        raise BrokenPipeError
+
+
+def show(
+    arguments: argparse.Namespace,
+    result: Mapping[str, Any],
+    written: Iterable[Path],
+    lines: Iterable[Line],
+) -> None:
+    """Print a verb's result: with --json as one object, else line by line.
+
+    written: files and directories that the verb has written. lines: a key and its text, or a line for
+    each of several texts; or what rich prints. In JSON, undefined values are null; non-ASCII characters
+    become escapes, so that a terminal acts on none.
+    """
+    if arguments.json:
+        verb, paths = arguments.verb, [path for path in written if path is not None]
+        document = {"schema": SCHEMA, "verb": verb, "written": paths, "result": result}
+        print(json.dumps(plain(document), indent=2, allow_nan=False))
+        return
+    console = Screen()
+    for line in lines:
+        if isinstance(line, tuple):
+            key, texts = line
+            for text in [texts] if isinstance(texts, (str, Path)) else texts:
+                prefix, text = f"{key:<14} ", f"{text}"
+                if console.is_terminal:  # whole words
+                    text = "\n".join(filled(text, console.width, prefix, " " * 15))
+                    prefix = ""
+                console.print(f"{prefix}{text}")
+        else:
+            if isinstance(line, Table) and line.caption and console.is_terminal:
+                line.caption = "\n".join(filled(f"{line.caption}", console.width, "", ""))
+            console.print(line)
+
+
+def title(robot: Robot) -> Text:
+    """The first line."""
+    return Text(robot.description or robot.name, "bold")
+
+
+def heading(
+    evaluation: Evaluation, samples: int | None = None, duration: float | None = None
+) -> list[Line]:
+    """Robot, solver and recording. samples, duration [s]: those that are used; None: all."""
+    robot, log = evaluation.robot, evaluation.log
+    samples = len(log) if samples is None else samples
+    duration = log.duration if duration is None else duration
+    source = ", ".join(filter(None, (str(evaluation.bag), log.topic)))
+    return [
+        title(robot),
+        ("solver", f"{robot.plugin}{'' if robot.friction else ', friction left out'}"),
+        ("recording", f"{source}: {samples} samples, {duration:.1f} s"),
+    ]
+
+
+def announce(text: str) -> None:
+    """Announce long work on stderr."""
+    print(message(f"ids: {text} ..."), file=sys.stderr, flush=True)
+
+
+class _ProgressLines:
+    """Progress where stderr isn't a terminal: a line after 10 s, 20 s, 40 s and so on of work."""
+
+    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+        self._now = now
+        self._start = now()
+        self._next = _FIRST_LINE
+
+    def __call__(self, what: str, done: int, total: int) -> None:
+        passed = self._now() - self._start
+        if passed >= self._next and 0 < done < total:
+            self._next = 2.0 * passed
+            announce(f"{what}: {100 * done // total} % done after {passed:.0f} s")
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress]:
+    """A bar per kind of work on stderr, removed at the end; lines where stderr isn't a terminal.
+
+    It shows the work done, the time it took, and the time left.
+    """
+    console = Screen(stderr=True)
+    if not console.is_terminal:
+        yield _ProgressLines()
+        return
+
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (
+        TextColumn("{task.description:<16}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        TextColumn("left"),
+    )
+    with Progress(*columns, console=console, transient=True) as bars:
+        tasks: dict[str, Any] = {}
+
+        def show(what: str, done: int, total: int) -> None:
+            if what not in tasks:
+                tasks[what] = bars.add_task(what, total=total)
+            bars.update(tasks[what], completed=done, total=total)
+
+        yield show
