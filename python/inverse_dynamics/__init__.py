@@ -26,10 +26,14 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import MotionLimits as MotionLimits
     from inverse_dynamics._core import Solver as Solver
     from inverse_dynamics._core import available_solvers as available_solvers
+    from inverse_dynamics.contact.contacts import Contacts as Contacts
+    from inverse_dynamics.contact.contacts import find_contacts as find_contacts
+    from inverse_dynamics.diagnosis.diagnose import diagnose as diagnose
     from inverse_dynamics.errors import UserError as UserError
     from inverse_dynamics.evaluation.evaluation import Evaluation as Evaluation
     from inverse_dynamics.evaluation.evaluation import JointError as JointError
     from inverse_dynamics.evaluation.evaluation import evaluate as evaluate
+    from inverse_dynamics.evaluation.evaluation import evaluate_run as evaluate_run
     from inverse_dynamics.evaluation.exports import export_series as export_series
     from inverse_dynamics.evaluation.figure import save_torque_figure as save_torque_figure
     from inverse_dynamics.evaluation.figure import torque_figure as torque_figure
@@ -37,6 +41,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.files import write_evaluation as write_evaluation
     from inverse_dynamics.evaluation.many_evaluations import ManyEvaluations as ManyEvaluations
     from inverse_dynamics.evaluation.many_evaluations import evaluate_many as evaluate_many
+    from inverse_dynamics.evaluation.run import Run as Run
+    from inverse_dynamics.evaluation.run import open_run as open_run
     from inverse_dynamics.excitation.excite import ExcitationResult as ExcitationResult
     from inverse_dynamics.excitation.excite import excite as excite
     from inverse_dynamics.excitation.excite import write_excitation as write_excitation
@@ -49,8 +55,11 @@ if TYPE_CHECKING:
     from inverse_dynamics.feedforward.trajectory_torques import (
         trajectory_torques as trajectory_torques,
     )
+    from inverse_dynamics.identification.files import write_identification as write_identification
     from inverse_dynamics.identification.identify import identify as identify
     from inverse_dynamics.identification.result import Identification as Identification
+    from inverse_dynamics.payload.payload import Payload as Payload
+    from inverse_dynamics.payload.payload import estimate_payload as estimate_payload
     from inverse_dynamics.public_recordings.public_recordings import (
         fetch_recordings as fetch_recordings,
     )
@@ -68,23 +77,28 @@ if TYPE_CHECKING:
 
 _MODULES = {  # and the names that users know
     "_core": ("FastModel", "JointPath", "MotionLimits", "Solver", "available_solvers"),
-    "recordings.bags": ("read_joint_log", "read_topics", "write_joint_logs"),
-    "recordings.joint_log": ("JointLog",),
-    "public_recordings.public_recordings": ("fetch_recordings",),
-    "recordings.recordings": ("read_recording",),
+    "contact.contacts": ("Contacts", "find_contacts"),
+    "diagnosis.diagnose": ("diagnose",),
     "errors": ("UserError",),
-    "evaluation.evaluation": ("Evaluation", "JointError", "evaluate"),
-    "retiming.retiming": ("Retimed", "retime"),
-    "feedforward.trajectory_torques": ("TrajectoryTorques", "trajectory_torques"),
+    "evaluation.evaluation": ("Evaluation", "JointError", "evaluate", "evaluate_run"),
+    "evaluation.exports": ("export_series",),
     "evaluation.figure": ("save_torque_figure", "torque_figure"),
+    "evaluation.files": ("read_evaluation", "write_evaluation"),
+    "evaluation.many_evaluations": ("ManyEvaluations", "evaluate_many"),
+    "evaluation.run": ("Run", "open_run"),
+    "excitation.excite": ("ExcitationResult", "excite", "write_excitation"),
+    "feedforward.files": ("write_trajectory_torques",),
+    "feedforward.trajectory_torques": ("TrajectoryTorques", "trajectory_torques"),
+    "identification.files": ("write_identification",),
     "identification.identify": ("identify",),
     "identification.result": ("Identification",),
-    "evaluation.files": ("read_evaluation", "write_evaluation"),
-    "excitation.excite": ("ExcitationResult", "excite", "write_excitation"),
-    "evaluation.exports": ("export_series",),
-    "evaluation.many_evaluations": ("ManyEvaluations", "evaluate_many"),
+    "payload.payload": ("Payload", "estimate_payload"),
+    "public_recordings.public_recordings": ("fetch_recordings",),
+    "recordings.bags": ("read_joint_log", "read_topics", "write_joint_logs"),
+    "recordings.joint_log": ("JointLog",),
+    "recordings.recordings": ("read_recording",),
     "retiming.files": ("write_retimed",),
-    "feedforward.files": ("write_trajectory_torques",),
+    "retiming.retiming": ("Retimed", "retime"),
     "robots.robots": ("Robot", "load_robot", "robot_names"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}

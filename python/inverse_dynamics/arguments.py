@@ -77,15 +77,30 @@ def _literal(default: ast.expr) -> ast.expr:
 def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
     """The function, which raises ArgumentError for arguments that its annotations don't allow.
 
-    What it takes as `**options` isn't looked at.
+    Its signature names what it takes as `**options: Unpack[OPTIONS]`, a dictionary type of its module.
     """
 
     @wraps(function)
     def call(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> _Result:
-        check_call(function, *args, **kwargs)
+        check_call(call, *args, **kwargs)
         return function(*args, **kwargs)
 
+    call.__signature__ = _unpacked(function)  # type: ignore[attr-defined]
     return call
+
+
+def _unpacked(function: Callable[..., object]) -> Signature:
+    """The signature with a parameter for each of its options."""
+    own = signature(function)
+    *parameters, last = own.parameters.values()
+    if last.kind is not Parameter.VAR_KEYWORD:
+        return own
+    options = function.__globals__[last.annotation.removeprefix("Unpack[").removesuffix("]")]
+    parameters += [
+        Parameter(name, Parameter.KEYWORD_ONLY, default=..., annotation=kind.__forward_arg__)
+        for name, kind in options.__annotations__.items()
+    ]
+    return own.replace(parameters=parameters)
 
 
 def check_call(function: Callable[..., object], *args: object, **kwargs: object) -> None:
@@ -102,9 +117,8 @@ def _mistake(
     named: Mapping[str, object],
 ) -> str | None:
     """The first mistake in the arguments; None if there is none."""
-    own = [p for p in parameters if p.kind is not Parameter.VAR_KEYWORD]
-    places = [p.name for p in own if p.kind is not Parameter.KEYWORD_ONLY]
-    known = [p.name for p in own if p.name != "self"]
+    places = [p.name for p in parameters if p.kind is not Parameter.KEYWORD_ONLY]
+    known = [p.name for p in parameters if p.name != "self"]
     if len(positional) > len(places):
         first = int("self" in places)
         most, got = len(places) - first, len(positional) - first
@@ -114,11 +128,11 @@ def _mistake(
         where = f"{function}: argument {harmless(name)}"
         if name in given:
             return f"{where}: expected once, got twice"
-        if name not in known and len(own) == len(parameters):
+        if name not in known:
             hint = did_you_mean(name, known)
             return f"{where}: unknown; {f'{hint} ' if hint else ''}known: {', '.join(known)}"
         given[name] = value
-    for parameter in own:
+    for parameter in parameters:
         expected, fits = _expectation(str(parameter.annotation))
         where = f"{function}: argument {parameter.name}: expected {expected}"
         if parameter.name not in given:

@@ -148,11 +148,14 @@ void bindEffort(py::module_& module) {
 
 void bindEvaluated(py::module_& module) {
   using E = const Evaluated&;
-  py::class_<Evaluated>(module, "Evaluated", "What came of evaluate().")
+  py::class_<Evaluated>(
+      module, "Evaluated",
+      "A motion, its torques and errors: what read_motion() gives, and two functions fill in.")
       .def_property_readonly("accelerations", &howOf)
       .def_property_readonly("period", [](E e) { return e.accelerations.samples.period; })
       .def_property_readonly("jitter", [](E e) { return e.accelerations.samples.jitter; })
-      .def_property_readonly("effort", [](E e) { return e.effort; })
+      .def_property_readonly(
+          "effort", [](E e) { return e.effort; }, "`auto` until it is compared.")
       .def_property_readonly(
           "table", [](E e) { return e.table; }, "The samples, and what was found.")
       .def(
@@ -245,22 +248,16 @@ void bindEvaluationOptions(py::module_& module) {
       inherited<O>("notes", &O::notes, "of reading"));
 }
 
-Evaluated evaluate(const SolverObject& solver, const py::object& motion, const Options& given,
-                   const py::function& ask, const py::function& progress,
-                   const SolverObject& subtracted) {
-  const auto shared = solverOf(solver), robots = solverOf(subtracted);
+Evaluated readMotion(const SolverObject& solver, const py::object& motion, const Options& given,
+                     const py::function& progress) {
+  const auto shared = solverOf(solver);
   evaluation::EvaluationOptions options = given;
-  options.subtracted = robots.get();
   options.progress = telling(progress);
-  options.ask = [&](const Evaluated& found) {
-    const py::gil_scoped_acquire acquire;
-    return ask(py::cast(found)).cast<EffortVerdict>();
-  };
   if (py::isinstance<evaluation::Recording>(motion)) {
     const auto& recording = motion.cast<const evaluation::Recording&>();
     const py::gil_scoped_release release;
-    return evaluation::evaluate(*recording.jointStates(options.topic, given.source), given.source,
-                                *shared, options);
+    return evaluation::readMotion(*recording.jointStates(options.topic, given.source), given.source,
+                                  *shared, options);
   }
   const Log log(motion);
   if (log.effort.size() == 0) {
@@ -269,7 +266,30 @@ Evaluated evaluate(const SolverObject& solver, const py::object& motion, const O
   }
   const evaluation::RecordedColumns view = log.view();
   const py::gil_scoped_release release;
-  return evaluation::evaluate(view, *shared, options);
+  return evaluation::readMotion(view, *shared, options);
+}
+
+// The samples are shared with what was given, which stays usable for another evaluation.
+Evaluated computeTorques(Evaluated motion, const SolverObject& solver, const Options& given,
+                         const py::function& progress) {
+  const auto shared = solverOf(solver);
+  evaluation::EvaluationOptions options = given;
+  options.progress = telling(progress);
+  const py::gil_scoped_release release;
+  evaluation::computeTorques(motion, *shared, options);
+  return motion;
+}
+
+Evaluated compareTorques(Evaluated motion, const SolverObject& solver, const Options& given,
+                         const py::function& progress, const SolverObject& subtracted,
+                         const std::optional<EffortVerdict>& verdict) {
+  const auto shared = solverOf(solver), robots = solverOf(subtracted);
+  evaluation::EvaluationOptions options = given;
+  options.subtracted = robots.get();
+  options.progress = telling(progress);
+  const py::gil_scoped_release release;
+  evaluation::compareTorques(motion, *shared, options, verdict.value_or(EffortVerdict()));
+  return motion;
 }
 
 void checkOptions(const std::string& method, const std::optional<double>& cutoff,
@@ -292,12 +312,21 @@ void bindEvaluator(py::module_& module) {
   bindEvaluated(module);
   bindEvaluationOptions(module);
   module.def(
-      "evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::arg("options"),
-      py::arg("ask"), py::arg("progress"), py::arg("subtracted"),
-      "Computed torques of recorded joint states and their errors.\n\n"
-      "motion: a JointLog, or a Recording, whose topic is read. ask: called with what is known\n"
-      "before efforts are, if they are `auto`; returns a Verdict. progress: called with the share\n"
-      "that is done. subtracted: a solver, whose gravity efforts without gravity lack.");
+      "read_motion", &readMotion, py::arg("solver"), py::arg("motion"), py::arg("options"),
+      py::arg("progress"),
+      "Samples of recorded joint states, their faults and accelerations.\n\n"
+      "motion: a JointLog, or a Recording, whose topic is read. progress: called with the share\n"
+      "that is done.");
+  module.def("compute_torques", &computeTorques, py::arg("motion"), py::arg("solver"),
+             py::arg("options"), py::arg("progress"),
+             "Torques of what read_motion() gave, with gravity.");
+  module.def("compare_torques", &compareTorques, py::arg("motion"), py::arg("solver"),
+             py::arg("options"), py::arg("progress"), py::arg("subtracted"),
+             py::arg("verdict") = py::none(),
+             "Measured torques and errors of what compute_torques() computed.\n\n"
+             "subtracted: a solver, whose gravity efforts without gravity lack. verdict: what the "
+             "data say\n"
+             "of efforts that are `auto`.");
   module.def("check_options", &checkOptions, py::arg("method"), py::arg("cutoff"),
              py::arg("without_rules"), py::arg("effort_is"),
              "Raise EvaluationError for what no recording can be evaluated with.");

@@ -61,25 +61,9 @@ void forEachBlock(Index samples, const EvaluationOptions& options, double share,
   }
 }
 
-void computeTorques(SampleTable& table, const InverseDynamicsSolver& solver,
-                    const EvaluationOptions& options) {
-  forEachBlock(table.size(), options, kAccelerated, kComputed, [&](Index first, Index count) {
-    auto computed = table.computed.middleCols(first, count);
-    solver.getTorquesBatch(table.q.middleCols(first, count), table.qd.middleCols(first, count),
-                           table.qdd.middleCols(first, count), computed);
-    requirePossibleTorques(options.recording, solver.jointNames(), options.units, computed, first);
-  });
-}
-
-// Settles the meaning of efforts, and subtracts gravity from computed torques if the efforts lack it.
-void settleEffort(Evaluation& result, const InverseDynamicsSolver& solver,
-                  const EvaluationOptions& options) {
-  SampleTable& table = *result.table;
-  if (result.effort.meaning == kAutomatic) {
-    const bool asked = options.ask && table.effort.size() > 0;
-    result.effort = effortOfData(asked ? options.ask(result) : EffortVerdict(), options.effort);
-  }
-  if (result.effort.meaning != kTorqueWithoutGravity) return;
+// Computed torques as efforts are that lack gravity.
+void subtractGravity(SampleTable& table, const InverseDynamicsSolver& solver,
+                     const EvaluationOptions& options) {
   const auto& subtracted = options.subtracted != nullptr ? *options.subtracted : solver;
   forEachBlock(table.size(), options, kComputed, kComputed, [&](Index first, Index count) {
     table.computed.middleCols(first, count) -=
@@ -88,7 +72,7 @@ void settleEffort(Evaluation& result, const InverseDynamicsSolver& solver,
 }
 
 // Measured torques, and errors of the computed ones.
-void compare(Evaluation& result, const EvaluationOptions& options) {
+void findErrors(Evaluation& result, const EvaluationOptions& options) {
   SampleTable& table = *result.table;
   forEachBlock(table.size(), options, kComputed, kMeasured, [&](Index first, Index count) {
     table.measured.middleCols(first, count) =
@@ -98,10 +82,11 @@ void compare(Evaluation& result, const EvaluationOptions& options) {
   result.errors_of_kept = metrics(table.computed, table.measured, Mask(table.kept));
 }
 
-// Evaluates a table of recorded columns; the stated meaning of efforts is known.
-void evaluateTable(Evaluation& result, const InverseDynamicsSolver& solver,
-                   const EvaluationOptions& options) {
+// Faults and accelerations of the samples of a table.
+void prepare(Evaluation& result, const InverseDynamicsSolver& solver,
+             const EvaluationOptions& options) {
   SampleTable& table = *result.table;
+  result.effort = statedEffort(options.effort);
   result.joint_names = solver.jointNames();
   const std::vector<std::string> jumps =
       unwrapPositions(table, solver.jointTypes(), result.joint_names);
@@ -110,43 +95,78 @@ void evaluateTable(Evaluation& result, const InverseDynamicsSolver& solver,
   filter.rules = options.rules;
   result.accelerations =
       named(options, [&] { return findAccelerations(table, options.method, filter); });
-  computeTorques(table, solver, options);
-  settleEffort(result, solver, options);
-  const bool recorded = table.effort.size() > 0;
-  if (recorded) compare(result, options);
-  for (const std::vector<std::string>& notes :
-       {solver.warnings(), options.notes, table.notes,
-        effortNotes(result.effort, options.effort, recorded && table.effort.isZero(0),
-                    driveGainsOf(solver)),
-        result.accelerations.findings, jumps}) {
-    result.notes.insert(result.notes.end(), notes.begin(), notes.end());
-  }
-  if (options.progress) options.progress(1.0);
+  result.notes = jumps;
 }
 
 }  // namespace
 
-Evaluation evaluate(const RecordedColumns& columns, const InverseDynamicsSolver& solver,
-                    const EvaluationOptions& options) {
+Evaluation readMotion(const RecordedColumns& columns, const InverseDynamicsSolver& solver,
+                      const EvaluationOptions& options) {
   named(options, [&] { check(columns); });
   Evaluation result;
-  result.effort = statedEffort(options.effort);
+  statedEffort(options.effort);  // refuses before samples are copied
   result.table = tableOf(columns);
-  evaluateTable(result, solver, options);
+  prepare(result, solver, options);
   return result;
 }
 
-Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
-                    const InverseDynamicsSolver& solver, const EvaluationOptions& options) {
+Evaluation readMotion(JointStateSource& source, const RecordingOptions& recording,
+                      const InverseDynamicsSolver& solver, const EvaluationOptions& options) {
   Evaluation result;
-  result.effort = statedEffort(options.effort);
+  statedEffort(options.effort);  // refuses before a recording is read
   result.table = std::make_shared<SampleTable>(recording.scratch);
   TellProgress progress;
   if (options.progress) {
     progress = [&](double share) { options.progress(kRead * share); };
   }
   readTable(source, recording, *result.table, progress);
-  evaluateTable(result, solver, options);
+  prepare(result, solver, options);
+  return result;
+}
+
+void computeTorques(Evaluation& motion, const InverseDynamicsSolver& solver,
+                    const EvaluationOptions& options) {
+  SampleTable& table = *motion.table;
+  forEachBlock(table.size(), options, kAccelerated, kComputed, [&](Index first, Index count) {
+    auto computed = table.computed.middleCols(first, count);
+    solver.getTorquesBatch(table.q.middleCols(first, count), table.qd.middleCols(first, count),
+                           table.qdd.middleCols(first, count), computed);
+    requirePossibleTorques(options.recording, solver.jointNames(), options.units, computed, first);
+  });
+}
+
+void compareTorques(Evaluation& motion, const InverseDynamicsSolver& solver,
+                    const EvaluationOptions& options, const EffortVerdict& verdict) {
+  SampleTable& table = *motion.table;
+  if (motion.effort.meaning == kAutomatic) motion.effort = effortOfData(verdict, options.effort);
+  if (motion.effort.meaning == kTorqueWithoutGravity) subtractGravity(table, solver, options);
+  const bool recorded = table.effort.size() > 0;
+  if (recorded) findErrors(motion, options);
+  const std::vector<std::string> jumps = std::move(motion.notes);
+  motion.notes.clear();
+  for (const std::vector<std::string>& notes :
+       {solver.warnings(), options.notes, table.notes,
+        effortNotes(motion.effort, options.effort, recorded && table.effort.isZero(0),
+                    driveGainsOf(solver)),
+        motion.accelerations.findings, jumps}) {
+    motion.notes.insert(motion.notes.end(), notes.begin(), notes.end());
+  }
+  if (options.progress) options.progress(1.0);
+}
+
+Evaluation evaluate(const RecordedColumns& columns, const InverseDynamicsSolver& solver,
+                    const EvaluationOptions& options) {
+  Evaluation result = readMotion(columns, solver, options);
+  computeTorques(result, solver, options);
+  compareTorques(result, solver, options);
+  return result;
+}
+
+Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
+                    const InverseDynamicsSolver& solver, const EvaluationOptions& options) {
+  Evaluation result = readMotion(source, recording, solver, options);
+  computeTorques(result, solver, options);
+  compareTorques(result, solver, options);
   return result;
 }
 

@@ -151,20 +151,20 @@ TEST(Evaluate, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {
                                          "were recorded"));
 }
 
-TEST(Evaluate, AsksTheDataWhereEffortsAreAuto) {
-  EvaluationOptions given = options(kAutomatic);
-  given.ask = [](const Evaluation& found) {
-    EXPECT_NEAR(found.table->computed(1, 0), 3 * found.table->qdd(1, 0) + 20, kRounding);
-    return EffortVerdict{kTorqueWithoutGravity, true, "torque is far off", ""};
-  };
-  const Evaluation told = evaluate(recorded(200), TwoJointSolver(), given);
+TEST(Evaluate, TakesAVerdictOfTheDataWhereEffortsAreAuto) {
+  const EvaluationOptions given = options(kAutomatic);
+  const TwoJointSolver solver;
+  Evaluation told = readMotion(recorded(200), solver, given);
+  computeTorques(told, solver, given);
+  EXPECT_EQ(told.effort.meaning, kAutomatic);
+  EXPECT_NEAR(told.table->computed(1, 0), 3 * told.table->qdd(1, 0) + 20, kRounding);
+  compareTorques(told, solver, given, {kTorqueWithoutGravity, true, "torque is far off", ""});
   EXPECT_EQ(told.effort.summary(),
             "torque without gravity, found from the data; sure: torque is far off");
   EXPECT_NEAR(told.table->computed(1, 0), 3 * told.table->qdd(1, 0), kRounding);
-  given.ask = nullptr;
-  const Evaluation unasked = evaluate(recorded(200), TwoJointSolver(), given);
-  EXPECT_EQ(unasked.effort.summary(), "torque, as the run configuration says; not sure");
-  EXPECT_THAT(unasked.notes, Contains(HasSubstr("`ids evaluate` does; taken as torque, as the run "
+  const Evaluation without = evaluate(recorded(200), solver, given);
+  EXPECT_EQ(without.effort.summary(), "torque, as the run configuration says; not sure");
+  EXPECT_THAT(without.notes, Contains(HasSubstr("`ids evaluate` does; taken as torque, as the run "
                                                 "configuration says")));
 }
 

@@ -29,15 +29,16 @@ from inverse_dynamics.contact import (
 )
 from inverse_dynamics.errors import EvaluationError, InvalidParameterError
 from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate, torques_with_gravity
+from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.progress import no_progress
-from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.descriptions import effort_limits
 from inverse_dynamics.robots.model_errors import read_model_errors
 from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from typing import Any
+
+    from typing_extensions import Unpack
 
     from inverse_dynamics._core import Solver
     from inverse_dynamics.arrays import Floats, Integers, Mask
@@ -129,7 +130,7 @@ def find_contacts(
     tracking: float | None = None,
     friction_band: Sequence[float] = (),
     progress: Progress = no_progress,
-    **options: Any,
+    **options: Unpack[RunOptions],
 ) -> Contacts:
     """Find the contacts of a recording.
 
@@ -147,8 +148,8 @@ def find_contacts(
             "--quiet (quiet=): expected two times in s since the first sample, the later one second, "
             f"got {quiet[0]:g},{quiet[1]:g}"
         )
-    evaluation = evaluate(bag, robot, progress=progress, **options)
-    arm = Arm(evaluation.robot)
+    evaluation = evaluate(bag, robot, progress=progress, **options).explained
+    arm = evaluation.arm
     solver = arm.solver
     quiet_from, held_out = evaluation, None
     if quiet_recording is not None:

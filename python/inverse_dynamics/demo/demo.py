@@ -27,7 +27,6 @@ from inverse_dynamics.outputs.files import Contents, write_text, written_whole
 from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.public_recordings.public_recordings import data_directory
-from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import RIGID_BODY, load_robot
 
 if TYPE_CHECKING:
@@ -194,8 +193,8 @@ def _simulated(name: str, target: Path, final: Path, quick: bool, progress: Prog
     robot, bag = load_robot(name), f"{name}_bag"
     run = simulate(robot, duration=_QUICK_SECONDS if quick else None, seed=0, progress=progress)
     write_run(run, target / bag, progress=progress)
-    evaluation = evaluate(target / bag, name, progress=progress)
-    solver = Arm(evaluation.robot).solver
+    evaluation = evaluate(target / bag, name, progress=progress).explained
+    solver = evaluation.arm.solver
     note = (
         "with the simulator's own accelerations, computed and measured torques differ by "
         f"{float(run.differences_from(solver).max()):.1g} N m at most: the errors shown are those "
@@ -206,7 +205,7 @@ def _simulated(name: str, target: Path, final: Path, quick: bool, progress: Prog
 
 def _stored(name: str) -> Evaluation:
     """Evaluate the simulated recording that comes with the package."""
-    evaluation = evaluate(stored_recording(name), name)
+    evaluation = evaluate(stored_recording(name), name).explained
     note = (
         "a recording that comes with this package: with MuJoCo the demo simulates the robots: "
         f"{how_to_install('mujoco')}"

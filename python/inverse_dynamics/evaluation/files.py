@@ -15,6 +15,7 @@ from inverse_dynamics._core import Accelerations, Effort, JointError, Verdict
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.evaluation.accelerations import MASKS
 from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
+from inverse_dynamics.evaluation.run import RunOptions, overridden
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.outputs.files import Contents, write_text, written_whole
 from inverse_dynamics.outputs.plain import json_text, read_back
@@ -27,6 +28,8 @@ from inverse_dynamics.show.plots import FORMATS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from typing_extensions import Unpack
 
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Storage
@@ -87,7 +90,7 @@ def write_evaluation(
     with written_whole(
         Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
     ) as target:
-        _write(evaluation, target, storage, figures, progress)
+        _write(evaluation.explained, target, storage, figures, progress)
 
 
 def evaluate_into(
@@ -100,7 +103,7 @@ def evaluate_into(
     figures: Sequence[str] = ("png",),
     parquet: str | None = None,
     progress: Progress = no_progress,
-    **options: Any,
+    **options: Unpack[RunOptions],
 ) -> Evaluation:
     """evaluate() and write_evaluation() of a recording that needn't fit into memory; with figures, a page too.
 
@@ -111,11 +114,11 @@ def evaluate_into(
     """
     check_writing(storage, figures, parquet=parquet is not None)
     robot = robot if isinstance(robot, Robot) else load_robot(robot)
-    inputs = (Path(bag), *robot.files, options.get("urdf"))
+    inputs = (Path(bag), *overridden(robot, options).files)
     with written_whole(
         Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
     ) as target:
-        evaluation = evaluate(bag, robot, progress=progress, scratch=target, **options)
+        evaluation = evaluate(bag, robot, progress=progress, scratch=target, **options).explained
         _write(evaluation, target, storage, figures, progress)
         if parquet is not None:
             from inverse_dynamics.evaluation.exports import export_series

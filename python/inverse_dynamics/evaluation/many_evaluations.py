@@ -23,8 +23,9 @@ from inverse_dynamics.arguments import check_call, checked
 from inverse_dynamics.errors import ArgumentError, OutputError, UserError
 from inverse_dynamics.evaluation import files as evaluations
 from inverse_dynamics.evaluation.cluster import check_stopped, on_cluster
-from inverse_dynamics.evaluation.evaluation import check_options, evaluate
+from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.evaluation.files import PAGE
+from inverse_dynamics.evaluation.run import RunOptions, check_options, overridden
 from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
 from inverse_dynamics.evaluation.workers import Failure, cores, in_processes
 from inverse_dynamics.outputs.files import Contents, write_text, written_whole
@@ -38,6 +39,8 @@ from inverse_dynamics.wording import counted, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+
+    from typing_extensions import Unpack
 
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.progress import Progress
@@ -104,7 +107,7 @@ class _Task:
     robot: Robot
     parquet: bool
     writing: Mapping[str, Any]  # storage and figures
-    options: Mapping[str, Any]  # of evaluate()
+    options: RunOptions
 
 
 @checked
@@ -120,7 +123,7 @@ def evaluate_many(
     figures: Sequence[str] = ("png",),
     parquet: bool = False,
     progress: Progress = no_progress,
-    **options: Any,
+    **options: Unpack[RunOptions],
 ) -> ManyEvaluations:
     """Evaluate recordings of one robot, each in a process of its own, into one directory.
 
@@ -171,10 +174,10 @@ def evaluate_many(
         )
     check_call(evaluate, next(iter(names.values())), robot, **options)
     robot = robot if isinstance(robot, Robot) else load_robot(robot)
-    check_options(robot, **options)
+    check_options(robot, options)
     evaluations.check_writing(storage, figures, parquet=parquet)
     writing = {"storage": storage, "figures": tuple(figures)}
-    inputs = (*names.values(), options.get("urdf"), *robot.files)
+    inputs = (*names.values(), *overridden(robot, options).files)
     with written_whole(Path(out), overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
         tasks = [
             _Task(name, bag, target / name, robot, parquet, writing, options)
@@ -293,7 +296,8 @@ def _with_whole_paths(task: _Task) -> _Task:
     def whole(path: Path | str | None) -> Path | None:
         return None if path is None else Path(path).absolute()
 
-    robot, options = task.robot, {**task.options, "urdf": whole(task.options.get("urdf"))}
+    robot, options = task.robot, task.options.copy()
+    options["urdf"] = whole(options.get("urdf"))
     paths = {name: whole(getattr(robot, name)) for name in ("file", "urdf", "model")}
     bag, target = task.bag.absolute(), task.target.absolute()
     return replace(task, bag=bag, target=target, robot=replace(robot, **paths), options=options)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
     """An evaluation for the page; `title` replaces the robot's name."""
+    evaluation = evaluation.explained
     robot, log = evaluation.robot, evaluation.log
     scene = Scene() if robot.urdf is None else read_scene(robot.urdf, evaluation.joint_names)
     left_out, kept = evaluation.samples.left_out, evaluation.errors_of_kept
@@ -35,7 +36,7 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
         else [],
         assumptions=_assumptions(evaluation),
         cause=causes[-1].removeprefix(CAUSE) if causes else "",
-        notes=list(evaluation.notes_without_causes),
+        notes=[note for note in evaluation.notes if not note.startswith(CAUSE)],
         links=scene.links,
         scene_notes=scene.notes,
         left_out=evaluation.samples.left_out_spans(evaluation.log),

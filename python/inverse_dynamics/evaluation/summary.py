@@ -60,5 +60,5 @@ def summary_of(
         effort=evaluation.effort.meaning,
         errors=evaluation.errors,
         errors_of_kept=evaluation.errors_of_kept,
-        notes=evaluation.notes,
+        notes=evaluation.explained.notes,
     )

@@ -30,7 +30,7 @@ class Views:
         ]
         if len(rows) > _MOST_JOINTS + 1:
             lines.append(f"... and {len(rows) - _MOST_JOINTS - 1} more joints")
-        return "\n".join([*lines, *self.notes[-1:]])
+        return "\n".join([*lines, *self.explained.notes[-1:]])
 
     def _repr_html_(self: Any) -> str:
         """For notebooks."""
@@ -39,7 +39,7 @@ class Views:
             f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>"
             for row in self._rows()
         )
-        notes = "".join(f"<li>{escape(note)}</li>" for note in self.notes)
+        notes = "".join(f"<li>{escape(note)}</li>" for note in self.explained.notes)
         title = f"{self.bag.name}, {self.robot.name}: mean RMSE {self.mean_rmse:.4g}"
         return f"<b>{escape(title)}</b><table><tr>{head}</tr>{body}</table>" + (
             notes and f"<ul>{notes}</ul>"

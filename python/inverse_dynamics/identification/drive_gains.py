@@ -23,6 +23,7 @@ import numpy as np
 
 from inverse_dynamics._core import ArmFitOptions
 from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.identification.blocks import blocks_of
 from inverse_dynamics.identification.knowledge import Knowledge, student_t
 from inverse_dynamics.identification.result import DriveGain, IdentificationError
@@ -33,6 +34,8 @@ from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from typing_extensions import Unpack
 
     from inverse_dynamics._core import ArmData, ArmFit, ArmFitter
     from inverse_dynamics.arrays import Floats, Mask, Parameter
@@ -71,7 +74,7 @@ def identify_drive_gains(
     fitter: ArmFitter,
     *,
     progress: Progress = no_progress,
-    **options: Any,
+    **options: Unpack[RunOptions],
 ) -> tuple[DriveGain, ...]:
     """The gain of each joint; `robot`'s or its solver's own where the data don't determine it.
 
@@ -88,7 +91,7 @@ def identify_drive_gains(
         drive_gains=(1.0,) * len(fitter.joint_names),
     )
     read = [
-        _read(path, load, described, {"progress": progress, **options})
+        _read(path, load, described, progress, options)
         for path, load in [*((path, None) for path in recordings), *known_payloads]
     ]
     fit = _fit(fitter, read)
@@ -133,13 +136,14 @@ def _read(
     path: Path | str,
     load: Mapping[str, Parameter] | None,
     described: Robot,
-    options: Mapping[str, Any],
+    progress: Progress,
+    options: RunOptions,
 ) -> _Recording:
     """Currents of a recording, as if each gain were one; computed: by the description with the load."""
     if load is not None:
         _check_load(path, load)
     described = with_changes(replace(described, parameters=dict(load or {})))
-    found = evaluate(path, described, **options)
+    found = evaluate(path, described, progress=progress, **options)
     if found.effort.meaning != "current":
         raise IdentificationError(
             f"{path}: expected motor currents, whose gains a known load determines, got "
@@ -148,7 +152,7 @@ def _read(
             "Efforts are motor currents",
         )
     blocks = [block.fitted for block in blocks_of(found, _BLOCKS)]
-    return _Recording(found, blocks, Arm(described).solver.payloads.get("payload"))
+    return _Recording(found, blocks, found.arm.solver.payloads.get("payload"))
 
 
 def _check_load(path: Path | str, load: Mapping[str, Parameter]) -> None:

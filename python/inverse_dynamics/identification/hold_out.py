@@ -10,11 +10,12 @@ from __future__ import annotations
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
+from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.identification.baselines import baseline_torques, baselines, root_mean_squares
 from inverse_dynamics.identification.result import (
     IdentificationError,
@@ -30,6 +31,8 @@ from inverse_dynamics.robots.robots import RIGID_BODY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from typing_extensions import Unpack
 
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.result import Identification
@@ -51,7 +54,7 @@ def hold_out(
     recording: Path | str,
     *,
     progress: Progress = no_progress,
-    **options: Any,
+    **options: Unpack[RunOptions],
 ) -> HoldOut:
     """Evaluate the identified model, the description, and the present model if there is one.
 
@@ -92,5 +95,5 @@ def hold_out(
         recording=recording,
         rmse=root_mean_squares([errors]),
         coverage=np.asarray(result.coverage),
-        notes=result.notes,
+        notes=result.explained.notes,
     )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from inverse_dynamics import _core
 from inverse_dynamics.arguments import checked
 from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
 from inverse_dynamics.evaluation.posture import locked_joints, posture_of
+from inverse_dynamics.evaluation.run import RunOptions, of_recording, overridden
 from inverse_dynamics.evaluation.turns import on_one_turn
 from inverse_dynamics.identification.baselines import (
     baseline_torques,
@@ -60,10 +61,12 @@ from inverse_dynamics.identification.uncertainty import (
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.chain_geometry import chain_geometry
 from inverse_dynamics.robots.descriptions import effort_limits, read_description
-from inverse_dynamics.robots.robots import RIGID_BODY, Robot, load_robot
+from inverse_dynamics.robots.robots import RIGID_BODY, Robot
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from typing_extensions import Unpack
 
     from inverse_dynamics._core import ArmFitter, FastModel, Solver
     from inverse_dynamics.arrays import Floats
@@ -92,7 +95,7 @@ def identify(
     coupling: Sequence[float] = (),
     accept: Sequence[str] = (),
     progress: Progress = no_progress,
-    **options: Any,
+    **options: Unpack[RunOptions],
 ) -> Identification:
     """Identify a physically consistent model with friction from recordings of a moving arm.
 
@@ -136,24 +139,21 @@ def identify(
     >>> found.solver().joint_names[2]
     'elbow_joint'
     """
-    if not isinstance(robot, Robot):
-        robot = load_robot(robot)
+    robot, stated = overridden(robot, options), of_recording(options)
     check_accepted(accept)
     description = _description(robot)
     if not recordings:
         raise IdentificationError("recordings: expected at least one, got none")
     _check_distinct([*recordings, *(path for path, _ in known_payloads)])
     fitter = _fitter(robot, description)
-    motors, unfitted = coupling_of(
-        coupling, options.get("gears") or robot.gears, len(fitter.joint_names)
-    )
+    motors, unfitted = coupling_of(coupling, robot.gears, len(fitter.joint_names))
     # Links are the description's, whatever model is compared with.
     posture = posture_of(
         Path(recordings[0]),
         replace(robot, model=None),
         description,
         fitter.joint_names,
-        topic=options.get("topic"),
+        topic=stated.get("topic"),
     )
     if posture.parameters:
         robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
@@ -162,12 +162,12 @@ def identify(
     gains: tuple[DriveGain, ...] = ()
     if known_payloads:
         gains = identify_drive_gains(
-            recordings, known_payloads, robot, fitter, progress=progress, **options
+            recordings, known_payloads, robot, fitter, progress=progress, **stated
         )
         robot = replace(robot, drive_gains=tuple(gain.value for gain in gains))
-    check_gains(robot, options.get("effort_is"))
+    check_gains(robot, stated.get("effort_is"))
     evaluations = on_one_turn(
-        [evaluate(path, robot, progress=progress, **options) for path in recordings]
+        [evaluate(path, robot, progress=progress, **stated) for path in recordings]
     )
     robot = evaluations[0].robot
     check_recordings(evaluations, accept)
@@ -407,7 +407,7 @@ def _result(
             ),
         ),
         # but for the cause of the present model's errors, which the fit removes
-        notes=tuple(note for e in evaluations for note in e.notes_without_causes),
+        notes=tuple(note for e in evaluations for note in e.notes),
     )
 
 

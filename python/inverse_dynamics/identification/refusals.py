@@ -53,7 +53,9 @@ def check_recordings(evaluations: Sequence[Evaluation], accept: Sequence[str] = 
         _check_efforts(evaluation)
         refused = [c for c in evaluation.diagnosis if c.kind in REFUSED and c.kind not in accept]
         if refused:
-            text = evaluation.notes[-1].removeprefix(CAUSE)  # all causes, or that they are rivals
+            text = evaluation.explained.notes[-1].removeprefix(
+                CAUSE
+            )  # all causes, or that they are rivals
             kinds = tuple(dict.fromkeys(cause.kind for cause in refused))
             raise _refusal(f"{evaluation.bag}: {text}", kinds, refused[0].mistake)
     _check_motion(evaluations)

@@ -20,6 +20,7 @@ import numpy as np
 from inverse_dynamics._core import PayloadEstimator, PayloadOptions, PayloadStatus, residual_noise
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate, torques_with_gravity
+from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.identification.uncertainty import read_uncertainty
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.descriptions import tip_link
@@ -30,6 +31,8 @@ from inverse_dynamics.wording import listed
 if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any
+
+    from typing_extensions import Unpack
 
     from inverse_dynamics._core import ArmUncertainty, PayloadEstimate, ResidualNoise, Solver
     from inverse_dynamics.arrays import Floats
@@ -155,7 +158,7 @@ def estimate_payload(
     *,
     empty: Path | str | None = None,
     progress: Progress = no_progress,
-    **options: Any,
+    **options: Unpack[RunOptions],
 ) -> Payload:
     """Estimate what the robot carries in a recording.
 
@@ -189,7 +192,7 @@ def estimate_payload(
         empty=None if empty is None else without.bag,
         time=samples.time,
         notes=(
-            *evaluation.notes_without_causes,
+            *evaluation.notes,
             *told,
             *phantom,
             *_notes(found, evaluation, idle, solver),

@@ -14,7 +14,8 @@
 ///     recording.scratch = "result";   // a directory with room for the table
 ///     Evaluation evaluation = evaluate(*source, recording, *solver, options);
 ///
-/// The steps, in the order in which they are taken; docs/evaluation.md has the formulas:
+/// The steps, in the order in which they are taken; docs/evaluation.md has the formulas. readMotion() takes 1 and 2,
+/// computeTorques() 3, compareTorques() 4 and 5, evaluate() all of them:
 ///
 /// 1. The stated meaning of efforts (effort.hpp).
 /// 2. Faults of the samples (samples.hpp), and accelerations (accelerations.hpp).
@@ -26,7 +27,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <string>
@@ -41,11 +41,6 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
-struct Evaluation;
-
-/// Callback: which meaning of efforts fits the computed torques (with gravity) of an evaluation.
-using AskData = std::function<EffortVerdict(const Evaluation&)>;
-
 /// Options of an evaluation, and names for its texts.
 struct EvaluationOptions {
   AccelerationMethod method = AccelerationMethod::kAuto;
@@ -57,7 +52,6 @@ struct EvaluationOptions {
   std::vector<std::string> units;  ///< n; of the torques: N m or N; empty: texts leave them out
   std::vector<std::string> notes;  ///< what was left out or assumed in reading: SampleTable::notes
   TellProgress progress;
-  AskData ask;  ///< called where efforts are `auto`; without it, the stated meaning counts
   /// The model whose gravity the robot subtracts from its efforts; null: the solver's.
   const inverse_dynamics_solver::InverseDynamicsSolver* subtracted = nullptr;
 };
@@ -69,24 +63,47 @@ struct Evaluation {
   /// gravity if the efforts are.
   std::shared_ptr<SampleTable> table;
   AccelerationReport accelerations;  ///< their origin, and findings; the table flags each sample
-  Effort effort;
-  std::vector<JointMetrics> errors;          ///< n; over all samples; empty without efforts
+  Effort effort;                     ///< kAutomatic until compareTorques() settles it
+  std::vector<JointMetrics> errors;  ///< n; over all samples; empty without efforts
   std::vector<JointMetrics> errors_of_kept;  ///< n; over those that were kept
   std::vector<std::string> notes;  ///< of solver and recording, on efforts, on the samples
 };
 
-/// Torques of a recorded motion against the measured ones.
+/// A recorded motion: its samples, their faults and accelerations; no torques yet.
 ///
-/// @param columns  without efforts there are computed torques, but no errors.
-/// @throws EvaluationError: samples that can't be evaluated; torques that no robot has.
-/// @throws ConfigurationError: currents without drive gains.
+/// @param columns  without efforts there will be computed torques, but no errors.
+/// @throws EvaluationError: samples that can't be evaluated. @throws ConfigurationError: currents without drive gains.
+Evaluation readMotion(const RecordedColumns& columns,
+                      const inverse_dynamics_solver::InverseDynamicsSolver& solver,
+                      const EvaluationOptions& options);
+
+/// The same of a recording, which is read once.
+///
+/// @throws RecordingError: as readTable() does.
+Evaluation readMotion(JointStateSource& source, const RecordingOptions& recording,
+                      const inverse_dynamics_solver::InverseDynamicsSolver& solver,
+                      const EvaluationOptions& options);
+
+/// Torques of a motion, with gravity.
+///
+/// @throws EvaluationError: torques that no robot has.
+void computeTorques(Evaluation& motion,
+                    const inverse_dynamics_solver::InverseDynamicsSolver& solver,
+                    const EvaluationOptions& options);
+
+/// Measured torques and errors of a motion whose torques are computed.
+///
+/// @param verdict  what the data say efforts mean; counts where `auto` is stated. Without one: torques.
+void compareTorques(Evaluation& motion,
+                    const inverse_dynamics_solver::InverseDynamicsSolver& solver,
+                    const EvaluationOptions& options, const EffortVerdict& verdict = {});
+
+/// Torques of a recorded motion against the measured ones: all steps. Throws what they do.
 Evaluation evaluate(const RecordedColumns& columns,
                     const inverse_dynamics_solver::InverseDynamicsSolver& solver,
                     const EvaluationOptions& options);
 
 /// The same for a recording, which is read once.
-///
-/// @throws RecordingError: as readTable() does.
 Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
                     const inverse_dynamics_solver::InverseDynamicsSolver& solver,
                     const EvaluationOptions& options);
