@@ -72,7 +72,7 @@ Seeds seeds() {
     const JointStateEncoder encoder(names, "base", {names.size(), names.size(), names.size()});
     Bytes sequence;
     for (const std::int64_t stamp : {1'500'000'000, -1}) {
-      Bytes message(encoder.size());
+      Bytes message(encoder.size() + (stamp < 0 ? 8 : 0));  // some end in bytes of no meaning
       encoder.write(stamp, {numbers, numbers, numbers}, message.data());
       putNumber(sequence, static_cast<std::uint16_t>(message.size()));
       sequence.insert(sequence.end(), message.begin(), message.end());

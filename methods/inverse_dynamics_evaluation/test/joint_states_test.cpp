@@ -132,15 +132,69 @@ TEST(JointStateDecoder, RefusesAMessageThatIsCutOffAnywhere) {
   }
 }
 
-TEST(JointStateDecoder, AllowsThreeBytesOfPaddingAtTheEnd) {
-  Bytes message = kMessage;
-  for (const int more : {1, 2, 3}) {
-    message.push_back(0xee);
-    EXPECT_EQ(layoutOf(message.data(), message.size()).names.size(), 2U) << more;
+Bytes followed(Bytes message, std::size_t more, std::uint8_t byte = 0xee) {
+  message.insert(message.end(), more, byte);
+  return message;
+}
+
+Bytes changed(Bytes message, std::size_t at, std::uint8_t byte) {
+  message[at] = byte;
+  return message;
+}
+
+TEST(JointStateDecoder, IgnoresWhatFollowsTheLastFieldAndRefusesLengthsBeyondTheEnd) {
+  const struct {
+    const char* what;
+    Bytes message;
+    const char* error;  // none: read
+  } cases[] = {
+      {"nothing", kMessage, ""},
+      {"up to a multiple of 4", followed(kMessage, 3), ""},
+      {"up to a multiple of 8", followed(kMessage, 4), ""},
+      {"as rclpy of jazzy with two empty arrays", followed(kMessage, 8), ""},
+      {"zeros", followed(kMessage, 8, 0), ""},
+      {"more than the message", followed(kMessage, 1000), ""},
+      {"in the other order of bytes", followed(bigEndian(kMessage), 8), ""},
+      {"the number of bytes of padding in the encapsulation's options",
+       followed(changed(kMessage, 3, 3), 3), ""},
+      {"a frame that is too long", changed(followed(kMessage, 8), 12, 85),
+       "expected 85 bytes at offset 16, got a message of 100"},
+      {"a name that is too long", changed(followed(kMessage, 8), 28, 69),
+       "expected 69 bytes at offset 32, got a message of 100"},
+      {"too many velocities", changed(followed(kMessage, 8), 68, 4),
+       "expected 32 bytes at offset 76, got a message of 100"},
+      {"too many efforts", changed(followed(kMessage, 8), 72, 4),
+       "expected 32 bytes at offset 76, got a message of 100"},
+  };
+  for (const auto& [what, message, error] : cases) {
+    SCOPED_TRACE(what);
+    if (*error == '\0') {
+      expectMessage(blockOf({message}));
+      EXPECT_THAT(blockOf({message, kMessage, message, message}).effort.values,
+                  ElementsAre(-1, 0.5, -1, 0.5, -1, 0.5, -1, 0.5));
+    } else {
+      EXPECT_THAT(errorOf<DamageError>([&, &text = message] { blockOf({text}); }),
+                  HasSubstr(error));
+    }
   }
-  message.push_back(0);
-  EXPECT_THAT(errorOf<DamageError>([&] { layoutOf(message.data(), message.size()); }),
-              HasSubstr("expected 92 bytes, got 96"));
+}
+
+TEST(JointStateDecoder, ReadsWhatRclpySerializes) {
+  // serialize_message() in jazzy with rmw_fastrtps: frame "b", 1.5 s, joint "a", position 1.
+  // clang-format off
+  const Bytes message = {
+      0, 1, 0, 0, 1, 0, 0, 0, 0, 0x65, 0xcd, 0x1d,                 // stamp
+      2, 0, 0, 0, 'b', 0, 0x6f, 0x6e,                              // frame
+      1, 0, 0, 0, 2, 0, 0, 0, 'a', 0, 0, 0,                        // name
+      1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f,                    // position
+      0, 0, 0, 0, 0, 0, 0, 0,                                      // neither velocity nor effort
+      1, 0, 0, 0, 0xb0, 0x7d, 0xc4, 0x46,                          // of no meaning
+  };
+  // clang-format on
+  const JointStateBlock block = blockOf({message, message});
+  EXPECT_EQ(block.joint_names, Strings{"a"});
+  EXPECT_THAT(block.position.values, ElementsAre(1, 1));
+  EXPECT_EQ(block.velocity.columns + block.effort.columns, 0U);
 }
 
 TEST(JointStateDecoder, ChecksLengthsBeforeTakingMemory) {

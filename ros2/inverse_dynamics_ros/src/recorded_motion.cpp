@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <rclcpp/serialization.hpp>
+#include <rclcpp/serialized_message.hpp>
 
 #include "interrupted.hpp"
 #include "user_error.hpp"

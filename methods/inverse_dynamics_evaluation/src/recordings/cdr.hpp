@@ -8,8 +8,9 @@
 ///     int32 sec, uint32 nanosec, string frame_id, string[] name, float64[] position, velocity, effort
 ///
 /// Strings and arrays begin with their length (uint32); a string's length counts its closing zero.
-/// Bytes of padding mean nothing and may hold anything. Some middleware fills messages up to a
-/// multiple of 4 bytes.
+/// Bytes of padding mean nothing and may hold anything. So do bytes after the last field, which ROS's
+/// own readers ignore too: middleware fills messages up to a multiple of 4 or 8 bytes, and jazzy's
+/// serialize_message() appends 8 where two arrays are empty.
 #pragma once
 
 #include <cstddef>
