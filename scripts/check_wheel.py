@@ -15,21 +15,29 @@ from pathlib import Path
 from zipfile import ZipFile
 
 ROOT = Path(__file__).resolve().parents[1]
+ROBOTS = "inverse_dynamics_robots"
 MOST_MEGABYTES = 15.0  # of a wheel, without its dependencies
 
-# What a user finds inside, below the module's directory.
+# What a user finds inside, below the module's directory; besides, headers of each library and what comes with a robot.
 NEEDED = (
     "lib/libinverse_dynamics_solver.so",
     "lib/libkdl_inverse_dynamics_solver_plugin.so",
     "lib/cmake/inverse_dynamics/inverse_dynamicsConfig.cmake",
-    "include/inverse_dynamics_solver/inverse_dynamics_solver.hpp",
-    "include/chain_dynamics/torques.hpp",
-    "share/inverse_dynamics_robots/robots/ur10_simulated.yaml",
-    "share/inverse_dynamics_robots/recordings/ur10_simulated/ur10_simulated.mcap",
-    "share/inverse_dynamics_robots/recordings/panda_simulated/panda_simulated.mcap",
     "_core.pyi",
     "py.typed",
 )
+
+
+def needed(names: list[str]) -> list[str]:
+    """What a user finds inside a wheel of these files."""
+    found = list(NEEDED)
+    for include in ROOT.glob("*/include"):
+        package = include.parent.name
+        if f"inverse_dynamics/lib/lib{package}.so" in names:
+            headers = include.rglob("*.hpp")
+            found += [f"include/{package}/{header.relative_to(include)}" for header in headers]
+    data = [f for d in ("models", "recordings", "robots") for f in (ROOT / ROBOTS / d).rglob("*")]
+    return found + [f"share/{file.relative_to(ROOT)}" for file in data if file.is_file()]
 
 
 def faults_of_file(wheel: Path) -> list[str]:
@@ -42,7 +50,7 @@ def faults_of_file(wheel: Path) -> list[str]:
         names = archive.namelist()
         notices = [n for n in names if n.endswith("/licenses/licenses/THIRD_PARTY.md")]
         text = archive.read(notices[0]).decode() if notices else ""
-    faults += [f"no {needed}" for needed in NEEDED if f"inverse_dynamics/{needed}" not in names]
+    faults += [f"no {name}" for name in needed(names) if f"inverse_dynamics/{name}" not in names]
     if not any(n.endswith("/licenses/licenses/LGPL-2.1.txt") for n in names):
         faults.append("the licence of Orocos KDL is missing")
     kdl = re.search(r"/liborocos-kdl(-[0-9a-f]{8})?\.so\.([0-9.]+)", "\n".join(names))

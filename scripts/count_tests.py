@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Counts the test cases that were run, over all packages, frameworks and programs.
 
-Usage: python3 count_tests.py BUILD_DIRECTORY
+Usage: python3 count_tests.py BUILD_DIRECTORY...
 
-Reads `PACKAGE/test_results/**/*.xml` (GoogleTest and pytest, one entry a case) and, where it is,
-`test_programs.xml` (CTest, one entry a program). A program that CTest calls failed though none of
-its cases is (it crashed on leaving, ran too long, or is missing) is one failure.
+Reads, of each directory that is there, `PACKAGE/test_results/**/*.xml` (GoogleTest and pytest, one entry a case) and
+`test_programs.xml` (CTest, one entry a program). A program that CTest calls failed though none of its cases is (it
+crashed on leaving, ran too long, or is missing) is one failure.
 
 Prints failed cases, reasons for skipping, and `N passed, N failed, N skipped` as the last line.
 The exit status is 1 if a test failed or none passed.
@@ -30,26 +30,28 @@ def outcome(case: ElementTree.Element) -> str:
     return (skip.get("message") or skip.text or "no reason given").strip().splitlines()[-1].strip()
 
 
-def main(build: Path) -> int:
+def main(builds: list[Path]) -> int:
     """Gives the exit status."""
     outcomes: Counter[str] = Counter()
-    failed, programs_with_failures = [], set()
-    for file in sorted(build.glob("*/test_results/**/*.xml")):
-        try:
-            cases = ElementTree.parse(file).iter("testcase")
-        except ElementTree.ParseError as error:  # killed while writing it
-            failed.append(f"{file}: not readable: {error}")
-            continue
-        for case in cases:
-            outcomes[outcome(case)] += 1
-            if outcome(case) == "failed":
-                failed.append(f"{case.get('classname')}.{case.get('name')}")
-                programs_with_failures.add(file.name.partition(".")[0])
-    for report in build.glob("test_programs.xml"):
-        for program in ElementTree.parse(report).iter("testcase"):
-            if program.get("status") == "run" or program.get("name") in programs_with_failures:
+    failed = []
+    for build in builds:
+        programs_with_failures = set()
+        for file in sorted(build.glob("*/test_results/**/*.xml")):
+            try:
+                cases = ElementTree.parse(file).iter("testcase")
+            except ElementTree.ParseError as error:  # killed while writing it
+                failed.append(f"{file}: not readable: {error}")
                 continue
-            failed.append(f"{program.get('name')} (the program itself: crash, time-out or missing)")
+            for case in cases:
+                outcomes[outcome(case)] += 1
+                if outcome(case) == "failed":
+                    failed.append(f"{case.get('classname')}.{case.get('name')}")
+                    programs_with_failures.add(file.name.partition(".")[0])
+        for report in build.glob("test_programs.xml"):
+            for program in ElementTree.parse(report).iter("testcase"):
+                name = program.get("name")
+                if program.get("status") != "run" and name not in programs_with_failures:
+                    failed.append(f"{name} (the program itself: crash, time-out or missing)")
     passed = outcomes.pop("passed", 0)
     outcomes.pop("failed", None)
     for name in failed:
@@ -63,4 +65,4 @@ def main(build: Path) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1])))
+    sys.exit(main([Path(directory) for directory in sys.argv[1:]]))

@@ -56,6 +56,18 @@ def test_every_page_is_in_the_navigation() -> None:
     assert sorted(named) == [str(page.relative_to(DOCS)) for page in sorted(DOCS.rglob("*.md"))]
 
 
+def test_what_pages_tell_people_to_run_is_run() -> None:
+    lists = [ROOT / ".ci/run", ROOT / "scripts/released", *(ROOT / ".github/workflows").iterdir()]
+    run = "\n".join(file.read_text(encoding="utf-8") for file in lists)
+    run += "lint_license study_transfer"  # part of lint; needs clones of others' repositories
+    for page in set(PAGES) - {ROOT / "CHANGELOG.md"}:
+        text = page.read_text(encoding="utf-8")
+        for command in re.findall(r"(?:^ *|`)\./scripts/(\w+(?: [a-z]\w*)?)", text, re.M):
+            name, _, what = command.partition(" ")
+            found = re.search(rf"\b{name}(\b|_)", run) and re.search(rf"\b({name}_)?{what}\b", run)
+            assert found, f"{page}: nothing runs ./scripts/{command}"
+
+
 def test_links_beyond_the_pages_lead_into_the_repository_or_are_text() -> None:
     text = "[design](design.md), [a `header`](../README.md#x)\n```\n[no](../gone)\n```\n![p](pictures/p.png)\n"
     without = text.replace("[a `header`](../README.md#x)", "a `header`")

@@ -5,11 +5,16 @@ from __future__ import annotations
 
 import argparse
 import re
+import shlex
+from contextlib import suppress
 from pathlib import Path
+
+import pytest
 
 from inverse_dynamics import cli
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "command_line.md"
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs" / "command_line.md"
 
 
 def verbs(parser: argparse.ArgumentParser) -> dict[str, str]:
@@ -30,3 +35,14 @@ def test_the_exit_statuses_are_those_of_the_help() -> None:
     assert rows == ["0", "1", "2", "3", "128 + N"]
     told = re.search(r"Exit status: (.*)", cli.make_parser().format_help(), re.DOTALL)[1]
     assert sorted(re.findall(r"\b(0|1|2|3|128 \+ N)\b", told)) == sorted(rows)
+
+
+@pytest.mark.parametrize(
+    "page", [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")], ids=lambda page: page.name
+)
+def test_the_program_knows_every_option_that_pages_name(page, capsys) -> None:
+    text = re.sub(r"\\\n *", "", page.read_text(encoding="utf-8"))
+    for command in re.findall(r"(?:^ *|`)ids ((?!help)[a-z][^`\n#|&>\\]*)", text, re.MULTILINE):
+        with suppress(SystemExit):  # of a command without its arguments
+            cli.make_parser().parse_args(shlex.split(command))
+        assert not re.search("unrecognized|invalid choice", capsys.readouterr().err), command

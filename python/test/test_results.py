@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
 import os
-from dataclasses import replace
+import runpy
+from dataclasses import make_dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from conftest import joint_log
 
 from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
 from inverse_dynamics._core import Accelerations, Effort, Verdict
+from inverse_dynamics.base import plain
 from inverse_dynamics.errors import OutputError, UserError
 from inverse_dynamics.evaluation.accelerations import Samples
 from inverse_dynamics.evaluation.evaluation import Evaluation, joint_errors
@@ -91,6 +93,20 @@ def test_a_result_is_read_back_whole(result, evaluation):
         )
     assert read.log.frame_id == "base"
     np.testing.assert_array_equal(read.log.receive_stamps, evaluation.log.receive_stamps)
+
+
+@pytest.mark.parametrize(
+    ("kind", "array"),
+    [("Floats", np.ones(2)), ("Integers", np.arange(2)), ("Mask", np.ones(2, dtype=bool))],
+)
+def test_arrays_are_read_back_whatever_numpys_own_annotation_is(monkeypatch, kind, array):
+    # That of NumPy 2.5 is an alias: as of this stand-in, its origin isn't ndarray.
+    monkeypatch.setattr("numpy.typing.NDArray", list)
+    read_back = runpy.run_path(plain.__file__)["read_back"]
+    holder = make_dataclass("Holder", [("array", kind)])
+    assert read_back(holder, {"array": array}, "holder").array is array
+    with pytest.raises(ValueError, match=r"holder.array: expected ndarray, got "):
+        read_back(holder, {"array": array.astype(complex)}, "holder")
 
 
 def test_currents_are_kept_beside_the_torques_that_they_mean(tmp_path):

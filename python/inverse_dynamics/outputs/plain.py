@@ -11,12 +11,15 @@ from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inverse_dynamics.wording import shown
 
-# What modules import for their annotations alone.
-_ARRAYS = {"Floats": NDArray[np.float64], "Integers": NDArray[np.int64], "Mask": NDArray[np.bool_]}
+# What modules import for their annotations alone. Not NDArray: NumPy 2.5 made it an alias, with an origin of its own.
+_ARRAYS = {
+    "Floats": np.ndarray[Any, np.dtype[np.float64]],
+    "Integers": np.ndarray[Any, np.dtype[np.int64]],
+    "Mask": np.ndarray[Any, np.dtype[np.bool_]],
+}
 
 
 def plain(value: Any) -> Any:
@@ -47,7 +50,8 @@ def read_back(kind: Any, value: Any, where: str) -> Any:
     Keys without a field are left out. Raises ValueError or TypeError where something doesn't fit.
     """
     origin, parts = get_origin(kind), get_args(kind)
-    if isinstance(kind, type) and isinstance(value, kind):
+    # Of X[Y], too, Python 3.10 says that it is a type.
+    if origin is None and isinstance(kind, type) and isinstance(value, kind):
         if kind is not int or not isinstance(value, bool):
             return value
     elif isinstance(kind, type) and is_dataclass(kind) and isinstance(value, dict):
