@@ -15,7 +15,7 @@ from pathlib import Path
 from zipfile import ZipFile
 
 ROOT = Path(__file__).resolve().parents[1]
-ROBOTS = "inverse_dynamics_robots"
+ROBOTS = ROOT / "core/inverse_dynamics_robots"
 MOST_MEGABYTES = 15.0  # of a wheel, without its dependencies
 
 # What a user finds inside, below the module's directory; besides, headers of each library and what comes with a robot.
@@ -31,13 +31,13 @@ NEEDED = (
 def needed(names: list[str]) -> list[str]:
     """What a user finds inside a wheel of these files."""
     found = list(NEEDED)
-    for include in ROOT.glob("*/include"):
+    for include in ROOT.glob("*/*/include"):
         package = include.parent.name
         if f"inverse_dynamics/lib/lib{package}.so" in names:
             headers = include.rglob("*.hpp")
             found += [f"include/{package}/{header.relative_to(include)}" for header in headers]
-    data = [f for d in ("models", "recordings", "robots") for f in (ROOT / ROBOTS / d).rglob("*")]
-    return found + [f"share/{file.relative_to(ROOT)}" for file in data if file.is_file()]
+    data = [f for d in ("models", "recordings", "robots") for f in (ROBOTS / d).rglob("*")]
+    return found + [f"share/{file.relative_to(ROBOTS.parent)}" for file in data if file.is_file()]
 
 
 def faults_of_file(wheel: Path) -> list[str]:
