@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import quoteattr
 
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.robots.located_yaml import parse_mapping
@@ -127,6 +126,8 @@ def _joint(
     ends = [factor * entry.number() for entry in limits.entries(2)] if limits else [-1e3, 1e3]
     velocity, effort = (_number(row, key) for key in ("velocity", "effort"))
     row.reject_others()
+    from xml.sax.saxutils import quoteattr  # imports urllib
+
     called = quoteattr(name.text() if name else f"joint{number}")
     unlimited = limits is None and stated == "revolute"
     return [
