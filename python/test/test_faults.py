@@ -129,7 +129,7 @@ def test_a_signal_leaves_no_trace_and_tells_what_there_is(bag, result, tmp_path,
         [*IDS, *map(str, command)], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     ) as child:
         deadline = time.monotonic() + 60
-        while not (tmp_path / ".out.part" / "new" / "bag").exists():
+        while not list(tmp_path.glob(".out.*.part/new/out/bag")):
             assert time.monotonic() < deadline
             time.sleep(0.001)
         child.send_signal(number)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 import os
+import signal
 import socket
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from inverse_dynamics import cli
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.outputs.files import (
     Contents,
@@ -16,6 +16,7 @@ from inverse_dynamics.outputs.files import (
     write_text_whole,
     written_whole,
 )
+from inverse_dynamics.robots import verb_robots
 
 MARK = "result.json"
 RESULT = Contents(MARK, (MARK, "of_old", "bag/{name}.db3", "plot.*"), added=("series.csv",))
@@ -35,21 +36,21 @@ def test_a_directory_is_there_with_all_files_at_the_end(tmp_path):
     assert os.listdir(tmp_path / "deep") == ["result"]
 
 
-def test_nothing_is_left_after_an_error(tmp_path):
+def test_nothing_changes_after_an_error(tmp_path):
     def write_and_fail():
-        with written_whole(tmp_path / "result") as directory:
-            (directory / "a").write_text("1")
+        options = {"contents": RESULT, "overwrite": True}
+        with written_whole(tmp_path / "result", **options) as directory:
+            (directory / MARK).write_text("new")
             raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
         write_and_fail()
     assert os.listdir(tmp_path) == []
-
-
-def test_an_empty_directory_may_be_filled(tmp_path):
-    (tmp_path / "result").mkdir()
-    write(tmp_path / "result")
-    assert (tmp_path / "result" / MARK).read_text() == "new"
+    (tmp_path / "result").mkdir()  # an empty directory may be filled
+    write(tmp_path / "result", "old")
+    with pytest.raises(ZeroDivisionError):
+        write_and_fail()
+    assert (tmp_path / "result" / MARK).read_text() == "old"
 
 
 def test_an_older_result_is_not_overwritten_silently(tmp_path):
@@ -68,16 +69,6 @@ def test_an_older_result_is_replaced_on_demand(tmp_path):
     assert (tmp_path / "result" / MARK).read_text() == "new"
     assert (tmp_path / "result").stat().st_mode & 0o777 == 0o750
     assert os.listdir(tmp_path) == ["result"]
-
-
-def test_an_older_result_stays_when_writing_the_new_one_fails(tmp_path):
-    write(tmp_path / "result", "old")
-    with (
-        pytest.raises(ZeroDivisionError),
-        written_whole(tmp_path / "result", contents=RESULT, overwrite=True),
-    ):
-        raise ZeroDivisionError
-    assert (tmp_path / "result" / MARK).read_text() == "old"
 
 
 def test_what_is_not_a_result_is_never_overwritten(tmp_path):
@@ -298,73 +289,88 @@ def test_names_that_no_text_can_hold_are_refused(tmp_path, name):
             check(tmp_path / os.fsdecode(name))
 
 
-# ---- runs at the same time, and killed ones --------------------------------------------------------------------------
-
-CHILD = """
-import os, sys, signal
-from pathlib import Path
-from inverse_dynamics.outputs.files import Contents, written_whole
-with written_whole(Path(sys.argv[1]), contents=Contents("result.json", ("result.json",)), overwrite=True) as d:
-    (d / "result.json").write_text("of the child")
-    print("at work", flush=True)
-    sys.stdin.readline()
-"""
+# ---- signals and failures --------------------------------------------------------------------------------------------
 
 
-def child_at_work(target):
-    child = subprocess.Popen(
-        [sys.executable, "-c", CHILD, str(target)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    assert child.stdout.readline() == "at work\n"
-    return child
+@pytest.mark.parametrize("kind", ["directory", "files"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_at_any_step_leaves_the_old_or_the_new_result(
+    tmp_path, monkeypatch, capsys, number, kind
+):
+    """The signal comes before (even) or after (odd) the k-th system call that changes the file system."""
+    names = ["result"] if kind == "directory" else ["a", "b"]
+
+    def write_result(text):
+        if kind == "directory":
+            write(Path("result"), text, overwrite=True)
+        else:
+            write_files(Path(), text, names)
+
+    def found():
+        return {
+            file.read_text()
+            for file in Path().rglob("*")
+            if file.is_file() and not file.is_symlink()
+        }
+
+    def interrupted(at):
+        """Exit code and message; None if no step is left."""
+        steps = []
+
+        def injected(function):
+            def call(*arguments, **options):
+                result = None
+                for after in (False, True):
+                    if after:
+                        result = function(*arguments, **options)
+                    steps.append(after)
+                    if len(steps) == at + 1:
+                        signal.raise_signal(number)
+                return result
+
+            return call
+
+        with monkeypatch.context() as patches:
+            for name in ("mkdir", "rename", "replace", "rmdir", "unlink", "open"):
+                patches.setattr(os, name, injected(getattr(os, name)))
+            code = cli.main(["robots"])
+        return (code, capsys.readouterr().err) if len(steps) > at else None
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(verb_robots, "run", lambda _: write_result("new"))
+    parser = cli.make_parser()  # imports its modules once
+    monkeypatch.setattr(cli, "make_parser", lambda: parser)
+    outcomes = set()
+    write_result("old")
+    at = 0
+    while run := interrupted(at):
+        code, text = run
+        (state,) = found()
+        assert code == 128 + number
+        kept = "; nothing was written; as it was before: "
+        assert ("; written, whole: " if state == "new" else kept) + ", ".join(names) in text
+        assert sorted(os.listdir()) == names
+        outcomes.add(state)
+        write_result("old")
+        at += 1
+    assert at >= 10
+    assert outcomes == {"old", "new"}
 
 
-def test_a_second_run_into_the_same_output_is_refused(tmp_path):
-    target = tmp_path / "result"
-    with child_at_work(target) as child:
-        for attempt in (write, check_output_directory, lambda t: write_text_whole(t, "")):
-            with pytest.raises(OutputError, match="another run is writing it now"):
-                attempt(target)
-        child.communicate("\n")
-    assert (target / MARK).read_text() == "of the child"
-    write(target, overwrite=True)
-    assert (target / MARK).read_text() == "new"
+def test_an_older_result_is_put_back_when_the_new_one_can_not_be_renamed(tmp_path, monkeypatch):
+    write(tmp_path / "result", "old")
+    replace = os.replace
+
+    def fail_for_new(source, target):
+        if Path(source).parent.name == "new":
+            raise OSError(28, "No space left on device", str(target))
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", fail_for_new)
+    with pytest.raises(OutputError, match="No space left.*what was there is kept; free some space"):
+        write(tmp_path / "result", overwrite=True)
+    assert (tmp_path / "result" / MARK).read_text() == "old"
     assert os.listdir(tmp_path) == ["result"]
-
-
-def test_what_a_killed_run_left_is_removed_by_the_next(tmp_path):
-    target = tmp_path / "result"
-    write(target, "old")
-    with child_at_work(target) as child:
-        child.kill()
-    assert sorted(os.listdir(tmp_path)) == [".result.part", "result"]
-    check_output_directory(target, overwrite=True, contents=RESULT)
-    assert os.listdir(tmp_path) == ["result"]
-    assert (target / MARK).read_text() == "old"
-
-
-def test_an_older_result_that_a_killed_run_had_moved_is_put_back(tmp_path):
-    target = tmp_path / "result"
-    write(target, "old")
-    (tmp_path / ".result.part").mkdir()
-    target.rename(tmp_path / ".result.part" / "old")
-    with pytest.raises(OutputError, match="exists already"):
-        write(target)
-    assert (target / MARK).read_text() == "old"
-    assert os.listdir(tmp_path) == ["result"]
-
-
-def test_a_folder_of_somebody_else_is_not_taken_for_a_leftover(tmp_path):
-    (tmp_path / ".result.part").mkdir()
-    (tmp_path / ".result.part" / "film.mkv").touch()
-    with pytest.raises(
-        OutputError, match=r"\.result\.part is in the way and was not written by this command"
-    ):
-        write(tmp_path / "result")
-    assert os.listdir(tmp_path / ".result.part") == ["film.mkv"]
 
 
 def test_a_directory_that_can_not_be_read_is_not_taken_for_an_empty_one(tmp_path, monkeypatch):
@@ -384,7 +390,7 @@ def test_a_directory_that_can_not_be_read_is_not_taken_for_an_empty_one(tmp_path
     assert sorted(os.listdir(target)) == ["mine", MARK]
 
 
-def write_three(directory, text, names=("a.yaml", "b.json", "c.html")):
+def write_files(directory, text, names=("a.yaml", "b.json", "c.html")):
     with files_written_whole([directory / name for name in names]) as fresh:
         for file in fresh:
             file.write_text(text)
@@ -392,8 +398,8 @@ def write_three(directory, text, names=("a.yaml", "b.json", "c.html")):
 
 def test_several_files_appear_together(tmp_path):
     target = tmp_path / "deep"
-    write_three(target, "old", ("a.yaml", "other/b.json"))
-    write_three(target, "new", ("a.yaml", "other/b.json"))
+    write_files(target, "old", ("a.yaml", "other/b.json"))
+    write_files(target, "new", ("a.yaml", "other/b.json"))
     assert (target / "a.yaml").read_text() == (target / "other" / "b.json").read_text() == "new"
     assert sorted(os.listdir(target)) == ["a.yaml", "other"]
     assert os.listdir(target / "other") == ["b.json"]
@@ -420,13 +426,13 @@ def test_what_was_there_is_put_back_when_the_last_of_several_fails(tmp_path, mon
     replaced = os.replace
 
     def fail_at_last(source, target):
-        if Path(target).name == "c.html" and not str(source).endswith(".before"):
+        if Path(source).name == "c.html":
             raise OSError(28, "No space left on device", str(target))
         replaced(source, target)
 
     monkeypatch.setattr(os, "replace", fail_at_last)
     with pytest.raises(OutputError, match="No space left"):
-        write_three(tmp_path, "new")
+        write_files(tmp_path, "new")
     assert {name: (tmp_path / name).read_text() for name in os.listdir(tmp_path)} == dict.fromkeys(
         older, "old"
     )

@@ -306,11 +306,3 @@ def test_series_that_were_edited_are_an_error(plain_result, name):
             read_evaluation(plain_result)
     finally:
         target.write_bytes(content)
-
-
-def test_a_result_that_a_killed_run_had_moved_is_found_again(tmp_path, evaluation):
-    write_evaluation(evaluation, tmp_path / "result", figures=())
-    (tmp_path / ".result.part").mkdir()
-    (tmp_path / "result").rename(tmp_path / ".result.part" / "old")
-    assert read_evaluation(tmp_path / "result").robot == evaluation.robot
-    assert os.listdir(tmp_path) == ["result"]

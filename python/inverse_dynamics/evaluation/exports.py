@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.evaluation.series import series_columns
 from inverse_dynamics.installation.extras import require
-from inverse_dynamics.outputs.files import check_output_file, file_written_whole
+from inverse_dynamics.outputs.files import check_output_file, files_written_whole
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.wording import printable
 
@@ -89,7 +89,7 @@ def export_series(
     )
     schema = pa.schema(fields, metadata=about)
     total = len(evaluation.log)
-    with file_written_whole(file) as work, _writer(work, schema, file_format) as writer:
+    with files_written_whole([file]) as (work,), _writer(work, schema, file_format) as writer:
         for begin in range(0, total, _ROWS):
             arrays = [pa.array(c.values[begin : begin + _ROWS]) for c in columns]
             if recording:

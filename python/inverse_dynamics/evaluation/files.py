@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import math
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +18,6 @@ from inverse_dynamics.evaluation.run import RunOptions, overridden
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.outputs.files import Contents, write_text, written_whole
 from inverse_dynamics.outputs.plain import json_text, read_back
-from inverse_dynamics.outputs.replacement import restore_interrupted
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.bags import write_torques
 from inverse_dynamics.recordings.joint_log import check_storage
@@ -172,9 +170,6 @@ def _write(
 def read_evaluation(directory: Path | str) -> Evaluation:
     """An evaluation that write_evaluation() wrote. Raises OutputError."""
     directory = Path(directory)
-    if not directory.exists():
-        with suppress(OSError, OutputError):
-            restore_interrupted(directory.absolute())
     _check_marked(directory)
     try:
         about = json.loads((directory / MARK).read_text(encoding="utf-8"))

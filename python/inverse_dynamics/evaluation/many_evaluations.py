@@ -14,13 +14,12 @@ import csv
 import math
 import os
 import shutil
-from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.arguments import check_call, checked
-from inverse_dynamics.errors import ArgumentError, OutputError, UserError
+from inverse_dynamics.errors import ArgumentError, UserError
 from inverse_dynamics.evaluation import files as evaluations
 from inverse_dynamics.evaluation.cluster import check_stopped, on_cluster
 from inverse_dynamics.evaluation.evaluation import evaluate
@@ -30,7 +29,6 @@ from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
 from inverse_dynamics.evaluation.workers import Failure, cores, in_processes
 from inverse_dynamics.outputs.files import Contents, write_text, written_whole
 from inverse_dynamics.outputs.plain import json_text
-from inverse_dynamics.outputs.replacement import restore_interrupted
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.several_recordings import named_recordings
 from inverse_dynamics.recordings.time_window import TimeWindow
@@ -185,6 +183,8 @@ def evaluate_many(
         ]
         outcomes = _outcomes(tasks, jobs, scheduler, progress)
         result = _sorted_out(Path(out), tasks, outcomes)
+        for remains in {*target.iterdir()} - {target / s.name for s in result.summaries}:
+            shutil.rmtree(remains, ignore_errors=True)  # of failed tasks
         _write(result, target, tuple(names), robot)
     return result
 
@@ -197,8 +197,6 @@ def _outcomes(
 
     def done(index: int, outcome: EvaluationSummary | Failure) -> None:
         found[index] = outcome
-        if isinstance(outcome, Failure):
-            _remove_remains(tasks[index].target)
         progress("evaluating", len(found), len(tasks))
 
     progress("evaluating", 0, len(tasks))
@@ -218,7 +216,7 @@ def _evaluate_one(task: _Task) -> EvaluationSummary:
     def progress(_what: str, _done: int, _total: int) -> None:
         check_stopped()
 
-    _remove_remains(task.target)  # of an earlier try, on a cluster
+    shutil.rmtree(task.target, ignore_errors=True)  # of an earlier try, on a cluster
     evaluation = evaluations.evaluate_into(
         task.target,
         task.bag,
@@ -230,13 +228,6 @@ def _evaluate_one(task: _Task) -> EvaluationSummary:
     )
     window = TimeWindow(task.options.get("start"), task.options.get("end"))
     return summary_of(evaluation, task.name, window)
-
-
-def _remove_remains(target: Path) -> None:
-    """Remove files of a failed task."""
-    with suppress(OSError, OutputError):
-        restore_interrupted(target)
-    shutil.rmtree(target, ignore_errors=True)
 
 
 def _sorted_out(

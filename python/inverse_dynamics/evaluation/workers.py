@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.outputs.crash import crash_report
-from inverse_dynamics.outputs.replacement import signals_deferred
+from inverse_dynamics.outputs.files import signals_deferred
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

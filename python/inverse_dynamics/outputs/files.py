@@ -5,15 +5,19 @@
     with written_whole(Path("result"), contents=RESULT, overwrite=True) as directory:
         (directory / "metrics.json").write_text("{}")
 
-Whatever happens meanwhile, the older result or the new one is there, whole: see replacement.py.
-Everything here raises OutputError.
+NAME is made in the hidden folder `.NAME.XXXXXXXX.part` beside it, and renamed at the end. Everything
+here raises OutputError.
 """
 
 from __future__ import annotations
 
 import errno
 import os
+import secrets
+import shutil
+import signal
 import stat
+import threading
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from glob import escape
@@ -21,25 +25,18 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.errors import OutputError, UserError
-from inverse_dynamics.outputs.replacement import (
-    WorkFolder,
-    put_directory,
-    put_files,
-    restore_interrupted,
-    signals_deferred,
-    sync_files,
-)
 from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
 _MOST_NAMED = 5  # files, in a text
+_FILE = "name another file with --out"
 _DIRECTORY = "name another directory with --out"
 
 _outputs: dict[Path, bool] = {}  # of this process, and whether they were written
 _replaced: list[Path] = []
-_at_work: list[WorkFolder] = []
+_at_work: list[Path] = []  # work folders
 
 
 @dataclass(frozen=True)
@@ -91,9 +88,7 @@ def check_output_directory(
     and only if it holds nothing else. inputs: what is read, which must lie elsewhere.
     """
     with _output(target, _DIRECTORY):
-        restore_interrupted(target.absolute())
-        if os.path.lexists(target):
-            _check_existing_directory(target, overwrite=overwrite, contents=contents)
+        _check_existing_directory(target, overwrite=overwrite, contents=contents)
         _check_apart(target, inputs, _DIRECTORY)
         _check_parent(target, _DIRECTORY)
 
@@ -113,7 +108,6 @@ def check_output_file(
     """
     remedy = f"name another file with {option}"
     with _output(target, remedy):
-        restore_interrupted(_file_meant(target))
         _check_regular(target, remedy)
         if target.exists() and not overwrite:
             raise OutputError(f"{target}: exists already; {remedy}, or replace it with --overwrite")
@@ -121,49 +115,38 @@ def check_output_file(
         _check_parent(target, remedy)
 
 
-def write_text_whole(target: Path, text: str) -> None:
-    """Write a file, or leave what was there."""
-    with file_written_whole(target) as work:
-        write_text(work, text)
-
-
 def write_text(file: Path, text: str) -> None:
     """Write UTF-8. Names of files that aren't UTF-8 become escapes, which JSON reads back."""
     file.write_text(text, encoding="utf-8", errors="backslashreplace")
 
 
-@contextmanager
-def file_written_whole(target: Path) -> Iterator[Path]:
-    """File to write; it becomes `target` at the end, and vanishes on an error.
-
-    Where `target` is a symbolic link, what it points to is replaced.
-    """
-    with files_written_whole([target]) as (fresh,):
-        yield fresh
+def write_text_whole(target: Path, text: str) -> None:
+    """Write a file, or leave what was there."""
+    with files_written_whole([target]) as (file,):
+        write_text(file, text)
 
 
 @contextmanager
 def files_written_whole(targets: Sequence[Path]) -> Iterator[list[Path]]:
     """Files to write; they become `targets` together at the end, or none of them does.
 
-    They are put in place in this order. On an error, what was there stays. A process that is killed
-    between two of them leaves some new ones.
+    They are renamed in this order; a process that is killed meanwhile leaves some new ones. Where a
+    target is a symbolic link, what it points to is replaced.
     """
-    remedy = "name another file with --out"
-    _note(targets)
+    places = [Path(os.path.realpath(target)) for target in targets]
+    for target in targets:
+        _note(target)
     with ExitStack() as stack:
-        works = [stack.enter_context(_work(target, remedy)) for target in targets]
+        fresh = [
+            stack.enter_context(_made(*pair, _FILE)) for pair in zip(targets, places, strict=True)
+        ]
         for target in targets:
-            _check_regular(target, remedy)
-        fresh = [work.new / place.name for work, place in works]
+            _check_regular(target, _FILE)
         yield fresh
         with signals_deferred():
-            for work, _ in works:
-                sync_files(work.new)
-            put_files(fresh, [place for _, place in works])
-            _note(targets, written=len(_at_work) == len(targets))
-            for work, _ in works:
-                work.remove()
+            _put(fresh, places)
+            for target in targets:
+                _note(target, written=True)
 
 
 @contextmanager
@@ -179,18 +162,15 @@ def written_whole(
     The arguments are those of check_output_directory().
     """
     check_output_directory(target, overwrite=overwrite, contents=contents, inputs=inputs)
-    with _work(target, _DIRECTORY, link=False) as (work, place):
-        yield work.new
-        outermost = len(_at_work) == 1
+    place = target.absolute()
+    with _made(target, place, _DIRECTORY) as fresh:
+        fresh.mkdir()
+        yield fresh
         with signals_deferred():
-            if outermost:
-                sync_files(work.new)
-            if os.path.lexists(place):
-                _check_existing_directory(target, overwrite=overwrite, contents=contents)
-                _replaced.extend([target] if outermost and any(target.iterdir()) else [])
-            put_directory(work.new, place, work.old, overwrite=overwrite)
-            _note([target], written=outermost)
-            work.remove()
+            _check_existing_directory(target, overwrite=overwrite, contents=contents)
+            older = place.exists() and any(place.iterdir())
+            _put([fresh], [place])
+            _note(target, written=True, older=older)
 
 
 def start_noting_outputs() -> None:
@@ -225,13 +205,31 @@ def move_up(directory: Path) -> None:
     directory.rmdir()
 
 
-def _note(targets: Iterable[Path], *, written: bool = False) -> None:
-    """For outcome(). A part of what is being made isn't noted."""
-    for target in targets:
-        if written and target in _outputs:
-            _outputs[target] = True
-        elif not _at_work:
-            _outputs.setdefault(target, False)
+@contextmanager
+def signals_deferred() -> Iterator[None]:
+    """SIGINT, SIGTERM and SIGHUP act at the end of the block. In the main thread; else no change."""
+    arrived: list[int] = []
+    before = {}
+    try:
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                handler = signal.getsignal(number)
+                if handler not in (None, signal.SIG_IGN):
+                    before[number] = handler
+                    signal.signal(number, lambda number, _: arrived.append(number))
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        for caught in arrived[:1]:
+            signal.raise_signal(caught)
+
+
+def _note(target: Path, *, written: bool = False, older: bool = False) -> None:
+    """For outcome() and replaced(). A part of what is being made isn't noted."""
+    if not any(work in target.absolute().parents for work in _at_work):
+        _outputs[target] = written or _outputs.get(target, False)
+        _replaced.extend([target] if older else [])
 
 
 @contextmanager
@@ -242,41 +240,67 @@ def _output(target: Path, remedy: str) -> Iterator[None]:
             raise OutputError(
                 f"{target}: expected a name in UTF-8 without control characters; name another output"
             )
-        _note([target])
+        _note(target)
         with suppress(FileNotFoundError, NotADirectoryError):
             target.lstat()  # else too long, for one
         yield
     except OSError as error:
-        raise _cannot_write(target, error, remedy) from error
+        kept = ""
+        with suppress(OSError):
+            kept = "; what was there is kept" if os.path.lexists(target) else ""
+        room = "free some space, or " if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
+        raise OutputError(
+            f"{target}: can't be written ({error.strerror or error}){kept}; {room}{remedy}"
+        ) from error
 
 
 @contextmanager
-def _work(target: Path, remedy: str, *, link: bool = True) -> Iterator[tuple[WorkFolder, Path]]:
-    """A work folder, removed at the end, and the place of the output."""
-    works: list[WorkFolder] = []
+def _made(target: Path, place: Path, remedy: str) -> Iterator[Path]:
+    """Path to make what is then renamed to `place`, in a work folder that is removed at the end."""
+    work = place.with_name(f".{place.name[:50]}.{secrets.token_hex(4)}.part")
+    fresh = work / "new" / place.name
     with _output(target, remedy):
-        place = _file_meant(target) if link else target.absolute()
         try:
-            with signals_deferred():
-                place.parent.mkdir(parents=True, exist_ok=True)
-                works.append(WorkFolder(place))
-                _at_work.extend(works)
-            yield works[0], place
-        except UserError as error:
-            # Texts name what is being made; its reader knows only where it was to be.
-            made = [str(work.new / place.name if link else work.new) for work in works]
+            work.mkdir(mode=0o700, parents=True)
+            _at_work.append(work)
+            fresh.parent.mkdir()
+            yield fresh
+        except UserError as error:  # its reader knows only the target
             text = " ".join(map(str, error.args))  # str() of it may be shortened
-            if not made or made[0] not in text:
+            if str(fresh) not in text:
                 raise
-            raise type(error)(text.replace(made[0], str(target))) from error
+            raise type(error)(text.replace(str(fresh), str(target))) from error
         finally:
             with signals_deferred():
-                for work in works:
+                if work in _at_work:
                     _at_work.remove(work)
-                    work.remove()
+                if not (fresh.exists() and (work / "old").exists()):  # it can't be put back
+                    shutil.rmtree(work, ignore_errors=True)
+
+
+def _put(fresh: Sequence[Path], places: Sequence[Path]) -> None:
+    """Rename what was made; on an error, put back what was there. Raises OSError."""
+    done = []
+    try:
+        for new, place in zip(fresh, places, strict=True):
+            if os.path.lexists(place):
+                shutil.copymode(place, new)
+                if len(fresh) > 1 or new.is_dir():
+                    os.rename(place, new.parents[1] / "old")
+            os.replace(new, place)
+            done.append(new)
+    except OSError:
+        for new, place in zip(fresh, places, strict=True):
+            if new in done:
+                os.replace(place, new)
+            if (old := new.parents[1] / "old").exists():
+                os.replace(old, place)
+        raise
 
 
 def _check_existing_directory(target: Path, *, overwrite: bool, contents: Contents) -> None:
+    if not os.path.lexists(target):
+        return
     if not target.is_dir() or target.is_symlink():
         raise OutputError(f"{target}: exists and isn't a directory; name another one with --out")
     here = Path.cwd()
@@ -337,11 +361,6 @@ def _check_parent(target: Path, remedy: str) -> None:
         raise OutputError(f"{target}: can't be written ({above} {reason}); {remedy}")
 
 
-def _file_meant(target: Path) -> Path:
-    """The target of a symbolic link; else the path itself."""
-    return Path(os.path.realpath(target)) if target.is_symlink() else target.absolute()
-
-
 def _matches(path: PurePath, patterns: Iterable[str], directory: Path) -> bool:
     own = escape(directory.absolute().name)
     return any(
@@ -357,13 +376,3 @@ def _same(one: Path, other: Path) -> bool:
         return os.path.samestat(one.stat(), other.stat())
     except OSError:
         return one == other
-
-
-def _cannot_write(target: Path, error: OSError, remedy: str) -> OutputError:
-    kept = ""
-    with suppress(OSError):
-        kept = "; what was there is kept" if os.path.lexists(target) else ""
-    room = "free some space, or " if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
-    return OutputError(
-        f"{target}: can't be written ({error.strerror or error}){kept}; {room}{remedy}"
-    )
