@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `ids`: verbs, errors, exit codes.
 
-A verb NAME is a module verb_NAME.py in the folder of its feature, with GROUP and SUMMARY (its place and line in the
-list of verbs), EPILOG (examples, a paragraph each), perhaps DESCRIPTION, `declare(options)` and `run(arguments)`,
+A verb NAME is a module verb_NAME.py in the folder of its feature, with PLACE and SUMMARY (its group, place in it,
+and line in the list of verbs), EPILOG (examples, a paragraph each), perhaps DESCRIPTION, `declare(options)` and `run(arguments)`,
 which imports what is heavy. Its line stands in docs/command_line.md. A package that is built on request brings its
 verb.
 Exit code 0: done; 2: something that the user can correct, named on stderr (without a verb: the help);
@@ -168,6 +168,11 @@ def make_parser() -> argparse.ArgumentParser:
                 title = ""
     parser.description = "\n".join((parser.description or "", "", *rows))
     return parser
+
+
+def _place(verb: tuple[str, Any]) -> tuple[int, int]:
+    group, number = verb[1].PLACE
+    return GROUPS.index(group), number
 
 
 def verb_modules() -> dict[str, str]:

@@ -11,10 +11,10 @@ from conftest import joint_log
 
 from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
 from inverse_dynamics._core import Accelerations, Effort, Verdict
-from inverse_dynamics.base import plain
 from inverse_dynamics.errors import OutputError, UserError
 from inverse_dynamics.evaluation.accelerations import Samples
 from inverse_dynamics.evaluation.evaluation import Evaluation, joint_errors
+from inverse_dynamics.outputs import plain
 from inverse_dynamics.robots.robots import Robot
 
 FILES = {

@@ -28,7 +28,13 @@ from inverse_dynamics.contact import (
     contact_thresholds,
 )
 from inverse_dynamics.errors import EvaluationError, InvalidParameterError
-from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate, torques_with_gravity
+from inverse_dynamics.evaluation.evaluation import (
+    Evaluation,
+    evaluate,
+    evaluate_run,
+    open_run,
+    torques_with_gravity,
+)
 from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.descriptions import effort_limits
@@ -148,12 +154,12 @@ def find_contacts(
             "--quiet (quiet=): expected two times in s since the first sample, the later one second, "
             f"got {quiet[0]:g},{quiet[1]:g}"
         )
-    evaluation = evaluate(bag, robot, progress=progress, **options).explained
+    evaluation = evaluate(bag, robot, progress=progress, **options)
     arm = evaluation.arm
     solver = arm.solver
     quiet_from, held_out = evaluation, None
     if quiet_recording is not None:
-        quiet_from = evaluate(quiet_recording, robot, progress=progress, **options)
+        quiet_from = evaluate_run(open_run(quiet_recording, robot, progress=progress, **options))
     elif quiet is None:
         held_out = _held_out(evaluation.robot)
     if held_out and gain and gain > held_out.gain:

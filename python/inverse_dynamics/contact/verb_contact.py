@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.contact.contacts import Contacts
 
-GROUP = "look"
+PLACE = ("look", 6)
 SUMMARY = "find what touched the robot, and with which force"
 DESCRIPTION = "Find what touched the robot in a recording, and with which force."
 EPILOG = """\
