@@ -17,6 +17,7 @@ from example_robots import JOINTS, RIGID_BODY, URDF
 from rosbags.rosbag2 import StoragePlugin, Writer
 
 from inverse_dynamics import Solver, evaluate, read_recording
+from inverse_dynamics.data.joint_trajectories import decode
 from inverse_dynamics.errors import BagError
 
 
@@ -122,9 +123,30 @@ def test_what_is_wrong_with_a_trajectory_is_said(tmp_path, messages, expected):
     assert str(caught.value).startswith(f"{bag}: {TOPIC}")
 
 
-def test_a_message_that_cant_be_decoded_is_said(tmp_path):
-    with Writer(tmp_path / "bag", version=9) as writer:
+def record(path, raw):
+    with Writer(path, version=9) as writer:
         connection = writer.add_connection(TOPIC, TRAJECTORY, typestore=STORE)
-        writer.write(connection, 10, b"\0\1\0\0\1")
+        writer.write(connection, 10, raw)
+    return path
+
+
+@pytest.mark.parametrize("little_endian", [True, False])
+@pytest.mark.parametrize("more", [0, 4, 8, 100])
+def test_bytes_after_a_message_are_ignored(tmp_path, more, little_endian):
+    raw = STORE.serialize_cdr(trajectory(["a"], [ONE]), TRAJECTORY, little_endian=little_endian)
+    log = read_recording(record(tmp_path / "bag", bytes(raw) + b"\xee" * more))
+    assert log.joint_names == ("a",)
+    np.testing.assert_array_equal(log.effort, [[1]])
+
+
+@pytest.mark.parametrize("raw", [b"", b"\0\1\0", b"\0\1\0\0\1", b"\0\3\0\0" + b"\0" * 100])
+def test_a_message_that_cant_be_decoded_is_said(tmp_path, raw):
     with pytest.raises(BagError, match="message 1: can't be decoded as trajectory_msgs"):
-        read_recording(tmp_path / "bag")
+        read_recording(record(tmp_path / "bag", raw))
+
+
+def test_a_message_that_is_cut_off_anywhere_is_refused(tmp_path):
+    raw = bytes(STORE.serialize_cdr(trajectory(["a"], [ONE]), TRAJECTORY))
+    for size in range(len(raw)):
+        with pytest.raises(BagError, match="can't be decoded"):
+            decode(raw[:size], "bag", TOPIC, 0)
