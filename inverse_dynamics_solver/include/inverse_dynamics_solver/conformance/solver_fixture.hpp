@@ -7,8 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <exception>
 #include <functional>
 #include <iomanip>
 #include <map>
