@@ -3,11 +3,13 @@
 #include "checks.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 namespace inverse_dynamics_evaluation::fuzz {
 namespace {

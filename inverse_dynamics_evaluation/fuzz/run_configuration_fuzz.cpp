@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
