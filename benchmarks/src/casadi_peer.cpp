@@ -3,6 +3,7 @@
 // C that CasADi generated and GCC compiled when the benchmarks were built: casadi_code.cpp.
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <stdexcept>
 #include <string>

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <random>
 #include <sstream>
+#include <string>
 
 namespace inverse_dynamics_benchmarks {
 namespace {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <iostream>
 #include <string>

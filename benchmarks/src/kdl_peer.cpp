@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <kdl/config.h>
 
+#include <chain_dynamics/chain.hpp>
+#include <cstddef>
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "kdl_chain.hpp"
