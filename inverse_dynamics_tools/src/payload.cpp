@@ -3,6 +3,7 @@
 
 #include <array>
 #include <inverse_dynamics_identification/payload_estimator.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <mutex>
 #include <string>

@@ -3,6 +3,7 @@
 
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <inverse_dynamics_timing/retime.hpp>
+#include <utility>
 #include <vector>
 
 #include "annotations.hpp"
