@@ -28,6 +28,8 @@
 /// The tests are a library, compiled with the interface.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"  // IWYU pragma: export
 
 /// Runs all tests for the solver that `traits` describes, under the name `prefix`.
