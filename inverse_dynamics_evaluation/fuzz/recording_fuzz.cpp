@@ -13,6 +13,7 @@
 #include <fstream>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <inverse_dynamics_evaluation/sample_table.hpp>
+#include <ios>
 #include <numeric>
 #include <string>
 #include <vector>

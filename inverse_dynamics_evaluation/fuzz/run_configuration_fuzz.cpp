@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <ios>
 #include <string>
 
 #include "inverse_dynamics_evaluation/accelerations.hpp"

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <fstream>
 #include <inverse_dynamics_evaluation/error.hpp>
+#include <ios>
 #include <iterator>
 #include <optional>
 #include <random>

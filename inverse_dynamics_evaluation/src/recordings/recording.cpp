@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <inverse_dynamics_evaluation/error.hpp>
+#include <ios>
 #include <map>
 #include <memory>
 #include <optional>
