@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
 #include <random>
 #include <vector>
 

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <fstream>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
 #include <limits>
 #include <memory>
 #include <optional>
