@@ -10,6 +10,7 @@
 #include <chain_dynamics/inertia_matrix.hpp>
 #include <chain_dynamics/torques.hpp>
 #include <cmath>
+#include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/parameters.hpp>
 #include <random>
 #include <string>

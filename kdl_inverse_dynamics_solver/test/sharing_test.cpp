@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "chain_dynamics/chain.hpp"
+#include "inverse_dynamics_solver/configuration.hpp"
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "kdl_chain.hpp"
 #include "kdl_workspace.hpp"
