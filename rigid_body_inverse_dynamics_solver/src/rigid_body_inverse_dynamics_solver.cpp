@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <exception>
 #include <iomanip>
+#include <ios>
 #include <memory>
 #include <set>
 #include <sstream>
