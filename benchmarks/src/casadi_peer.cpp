@@ -2,6 +2,8 @@
 
 // C that CasADi generated and GCC compiled when the benchmarks were built: casadi_code.cpp.
 
+#include <benchmark/benchmark.h>
+
 #include <array>
 #include <cstddef>
 #include <memory>

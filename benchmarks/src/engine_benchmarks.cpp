@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine_benchmarks.hpp"
 
+#include <benchmark/benchmark.h>
+
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
 #include <chain_dynamics/model.hpp>

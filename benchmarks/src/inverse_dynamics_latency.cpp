@@ -9,6 +9,7 @@
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <iostream>
+#include <ostream>
 #include <string>
 #include <vector>
 

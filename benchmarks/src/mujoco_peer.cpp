@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <benchmark/benchmark.h>
 #include <mujoco/mujoco.h>
 
 #include <array>

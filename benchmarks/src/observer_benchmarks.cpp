@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "observer_benchmarks.hpp"
 
+#include <benchmark/benchmark.h>
+
 #include <cmath>
 #include <cstddef>
 #include <inverse_dynamics_control/acceleration_residual.hpp>
