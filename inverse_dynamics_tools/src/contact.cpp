@@ -3,6 +3,7 @@
 
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/external_wrench.hpp>
 #include <memory>
 #include <optional>
 #include <string>

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/states.hpp>
 #include <string>
 #include <utility>
 #include <vector>
