@@ -43,7 +43,7 @@ user_packages=(
 # Debian and Ubuntu packages, in groups.
 apt_packages=(
   # Fetching, compiling (make: a plain `colcon build` of a user's workspace), checking.
-  ca-certificates git g++ cmake make ninja-build ccache clang-tidy shellcheck
+  ca-certificates git g++ cmake make ninja-build ccache shellcheck
   # Python and its virtual environment.
   python3 python3-dev python3-venv
   # The colcon command and the extensions that the builds here need.

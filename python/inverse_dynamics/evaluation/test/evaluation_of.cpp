@@ -6,13 +6,19 @@
 ///
 ///     evaluation_of RECORDING ROBOT OUT    # metrics to stdout, torques to the recording OUT
 
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <inverse_dynamics_evaluation/accelerations.hpp>
 #include <inverse_dynamics_evaluation/evaluator.hpp>
 #include <inverse_dynamics_evaluation/joint_state_writer.hpp>
+#include <inverse_dynamics_evaluation/metrics.hpp>
 #include <inverse_dynamics_evaluation/recording.hpp>
 #include <inverse_dynamics_evaluation/run_configuration.hpp>
+#include <inverse_dynamics_evaluation/sample_table.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/parameters.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <iterator>
 #include <memory>
