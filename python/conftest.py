@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-# pytest has put this directory first on the path: the package in it has no extension module. Tests see the one that
-# is installed.
+# Tests see what is installed. So this directory, whose package has no extension module, must not be on the path: pytest
+# puts it there for this file, and would again for each folder that is a package.
 sys.path.remove(str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "testing"))
 from example_recordings import recording
@@ -21,6 +21,12 @@ from example_robots import RIGID_BODY, URDF
 from inverse_dynamics import Identification, Solver, cli, identify
 
 pytest.register_assert_rewrite("command_line", "pages")
+
+
+@pytest.hookimpl(optionalhook=True)  # since pytest 8; before, tests had no packages above them
+def pytest_collect_directory(path: Path, parent: pytest.Collector) -> pytest.Collector:
+    """A plain folder, whatever is in it."""
+    return pytest.Dir.from_parent(parent, path=path)
 
 
 @pytest.fixture(scope="session")
