@@ -13,7 +13,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 # What features share, from the bottom: each knows itself and those before it.
 SHARED = (
-    *("wording", "_core", "errors", "arrays", "decimals", "progress", "arguments"),
+    *("wording", "_core", "errors", "arrays", "decimals", "progress", "arguments", "contact"),
     *("installation", "outputs", "robots", "recordings", "show", "evaluation"),
 )
 # Only modules verb_*.py and cli.py know the terminal.
@@ -26,7 +26,7 @@ ALLOWED = {
     ("demo", "simulation"): "recordings of the simulated robots",
     ("evaluation", "diagnosis"): "meaning of efforts, and causes of errors",
     ("excitation", "simulation"): "the robot whose motion is chosen",
-    ("identification", "contact"): "what a model leaves, as an observer has it",
+    ("identification", "contacts"): "what a model leaves, as an observer has it",
     ("identification", "diagnosis"): "recordings that no model is identified from",
     ("identification", "payload"): "the former name of payload.payload",
     ("results", "identification"): "the former name of identification.files",

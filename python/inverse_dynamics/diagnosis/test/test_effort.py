@@ -11,7 +11,7 @@ from example_robots import RIGID_BODY, UR10, URDF
 
 from inverse_dynamics import Solver, evaluate, load_robot
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.evaluation import evaluation
+from inverse_dynamics.evaluation import run
 from inverse_dynamics.robots.choices import EFFORT_MEANINGS
 
 GAINS = (13.0, 14.0, 11.0, 10.0, 9.0, 8.0)
@@ -99,9 +99,9 @@ def test_where_the_data_dont_tell_the_configuration_counts(tmp_path, robot, conf
 @pytest.fixture
 def currents_by_format(monkeypatch):
     """Recordings whose format says that efforts are currents."""
-    opened = evaluation.open_motion
+    opened = run.open_motion
     monkeypatch.setattr(
-        evaluation, "open_motion", lambda *a, **k: opened(*a, **k)._replace(effort_is="current")
+        run, "open_motion", lambda *a, **k: opened(*a, **k)._replace(effort_is="current")
     )
 
 

@@ -16,7 +16,7 @@ from inverse_dynamics.errors import (
     InvalidRobotDescriptionError,
     RobotError,
 )
-from inverse_dynamics.evaluation import evaluation
+from inverse_dynamics.evaluation import run
 from inverse_dynamics.evaluation.files import evaluate_into, write_evaluation
 from inverse_dynamics.installation import extras
 from inverse_dynamics.recordings.bags import write_joint_logs
@@ -58,7 +58,7 @@ def test_backward_differences_are_computed_as_the_formula_says(bag, robot, solve
 
 def test_a_motion_in_memory_without_efforts_is_refused(bag, robot, monkeypatch):
     log = replace(read_recording(bag), effort=np.zeros((0, 0)))
-    monkeypatch.setattr(evaluation, "open_motion", lambda *_, **__: log)
+    monkeypatch.setattr(run, "open_motion", lambda *_, **__: log)
     with pytest.raises(
         EvaluationError, match="motion: effort: expected one row per sample, got none"
     ):

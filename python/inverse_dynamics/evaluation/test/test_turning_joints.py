@@ -11,7 +11,7 @@ from example_robots import KDL, RIGID_BODY
 from simulation_arms import joint, link, robot
 
 from inverse_dynamics import Solver, evaluate, identify
-from inverse_dynamics.contact.contacts import find_contacts
+from inverse_dynamics.contacts.contacts import find_contacts
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.turns import on_one_turn
 from inverse_dynamics.excitation.excitation import ExcitationOptions

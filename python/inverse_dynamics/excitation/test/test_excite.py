@@ -18,11 +18,12 @@ from identified_arms import identification
 from simulation_arms import robots_package, two_links
 
 from inverse_dynamics.cli import main
+from inverse_dynamics.excitation import excitation
 from inverse_dynamics.excitation.excitation import ExcitationOptions
 from inverse_dynamics.excitation.excite import LEAD_IN, excite, message_text
 from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.robots.robots import load_robot, robot_of_description
-from inverse_dynamics.simulation import excitation, simulate, write_run
+from inverse_dynamics.simulation import simulate, write_run
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory, read_trajectory
 
 
@@ -192,7 +193,7 @@ def test_ctrl_c_leaves_nothing(arm: Path, tmp_path: Path) -> None:
     out.parent.mkdir()
     code = (
         "import sys, threading, os, signal\n"
-        "from inverse_dynamics.simulation import excitation\n"
+        "from inverse_dynamics.excitation import excitation\n"
         "plain = excitation._Judge.cost\n"
         "def cost(self, x):\n"
         "    os.kill(os.getpid(), signal.SIGINT)\n"

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.contact.tables import contact_table, threshold_table
+from inverse_dynamics.contacts.tables import contact_table, threshold_table
 from inverse_dynamics.evaluation.page import report_run
 from inverse_dynamics.show.page import Band, ReportSummary, render_page
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
-    from inverse_dynamics.contact.contacts import Contacts
+    from inverse_dynamics.contacts.contacts import Contacts
 
 
 def render_contacts(contacts: Contacts) -> str:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.contact.figure import contact_figure
-from inverse_dynamics.contact.page import render_contacts
+from inverse_dynamics.contacts.figure import contact_figure
+from inverse_dynamics.contacts.page import render_contacts
 from inverse_dynamics.outputs.files import Contents, write_text, written_whole
 from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.show.plots import FORMATS, check_formats, save_figure
@@ -17,7 +17,7 @@ from inverse_dynamics.show.plots import FORMATS, check_formats, save_figure
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics.contact.contacts import Contacts
+    from inverse_dynamics.contacts.contacts import Contacts
 
 MARK = "contacts.json"
 CONTENTS = Contents(

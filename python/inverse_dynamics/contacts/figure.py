@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from inverse_dynamics.arrays import Floats
-    from inverse_dynamics.contact.contacts import Contacts
+    from inverse_dynamics.contacts.contacts import Contacts
 
 _MOST_POINTS = 6000
 _CONTACT: dict[str, Any] = {"color": palette.CONTACT, "alpha": 0.35, "linewidth": 0}

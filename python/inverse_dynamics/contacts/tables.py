@@ -10,7 +10,7 @@ from inverse_dynamics.show.tables import ReportTable, of_joints
 from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
-    from inverse_dynamics.contact.contacts import Contact, Contacts
+    from inverse_dynamics.contacts.contacts import Contact, Contacts
 
 
 def contact_table(contacts: Contacts) -> ReportTable:

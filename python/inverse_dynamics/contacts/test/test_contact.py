@@ -26,8 +26,8 @@ from inverse_dynamics.contact import (
     WrenchStatus,
     contact_thresholds,
 )
-from inverse_dynamics.contact.contacts import find_contacts
-from inverse_dynamics.contact.verb_contact import none_found
+from inverse_dynamics.contacts.contacts import find_contacts
+from inverse_dynamics.contacts.verb_contact import none_found
 from inverse_dynamics.errors import EvaluationError, InvalidParameterError
 from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.identify import identify

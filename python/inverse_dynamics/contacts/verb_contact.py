@@ -19,7 +19,7 @@ from inverse_dynamics.wording import listed
 if TYPE_CHECKING:
     import argparse
 
-    from inverse_dynamics.contact.contacts import Contacts
+    from inverse_dynamics.contacts.contacts import Contacts
 
 PLACE = ("look", 6)
 SUMMARY = "find what touched the robot, and with which force"
@@ -102,9 +102,9 @@ def none_found(contacts: Contacts) -> str:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.contact.contacts import find_contacts
-    from inverse_dynamics.contact.files import CONTENTS, summary, write_contacts
-    from inverse_dynamics.contact.tables import contact_table, threshold_table
+    from inverse_dynamics.contacts.contacts import find_contacts
+    from inverse_dynamics.contacts.files import CONTENTS, summary, write_contacts
+    from inverse_dynamics.contacts.tables import contact_table, threshold_table
     from inverse_dynamics.outputs.files import check_output_directory
     from inverse_dynamics.recordings.several_recordings import name_of
     from inverse_dynamics.terminal.screen import heading, progress_bar, show
