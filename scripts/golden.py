@@ -34,11 +34,13 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 MARK = "golden.txt"  # in DIR: its absolute path when it was made
-MASKS = (  # what may differ: paths of the installation, files of reports, lines of progress, places of warnings
-    (rb"(?:/[\w.+@~-]+)+(?=/share/inverse_dynamics_robots/)", b"PREFIX"),
+MASKS = (  # paths of the installation, files of reports, lines of progress, places of warnings, addresses, a date
+    (rb"(?<![\w.+@~/-])(?:/[\w.+@~-]+)+(?=/share/inverse_dynamics_robots/)", b"PREFIX"),
     (rb"/tmp/ids-error-\w+\.txt", b"REPORT"),
     (rb"ids: [^\n]*: \d+ % done after \d+ s \.\.\.\n", b""),
-    (rb"[^\s]*/inverse_dynamics/[\w/]+\.py:\d+(?=: \w+Warning)", b"MODULE"),
+    (rb"(?<![\w.+@~/-])(?:/[\w.+@~-]+)+\.py:\d+(?=: \w+Warning)", b"MODULE"),
+    (rb" at 0x[0-9a-f]+>", b">"),
+    (rb"Created on: [\w :]{24}", b""),  # in the .mat file of the inputs
 )
 
 Cases = dict[str, list[list[str]]]  # commands: words, or `>>>` and a program
