@@ -22,6 +22,12 @@ requirements=python/requirements.txt
 # Debian's ament, colcon and pluginlib belong to Debian's own python3, whatever `python3` is first on PATH.
 system_python=/usr/bin/python3
 
+# The same in all builds, so that ccache knows what another one has compiled. -g1 is enough for stack traces; variables
+# (-g) would double the time of compiling templates.
+optimisation="-O2 -g1 -DNDEBUG"
+# GCC collects its garbage less often: 5 % less time, 100 MB more memory.
+if "${CXX:-c++}" --version 2>&1 | grep -q "Free Software"; then optimisation+=" --param=ggc-min-heapsize=400000"; fi
+
 # Engine, interface and solvers; and what is built on them without ROS 2.
 solver_packages=(
   chain_dynamics inverse_dynamics_robots inverse_dynamics_solver
@@ -37,7 +43,7 @@ user_packages=(
 # Debian and Ubuntu packages, in groups.
 apt_packages=(
   # Fetching, compiling (make: a plain `colcon build` of a user's workspace), checking.
-  ca-certificates git g++ cmake make ninja-build ccache clang-tidy shellcheck
+  ca-certificates git g++ cmake make ninja-build ccache shellcheck
   # Python and its virtual environment.
   python3 python3-dev python3-venv
   # The colcon command and the extensions that the builds here need.
@@ -116,6 +122,7 @@ prepare_build() {
   cmake_arguments=(
     --no-warn-unused-cli # a package of data alone uses none of these
     -DCMAKE_BUILD_TYPE=RelWithDebInfo
+    "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=$optimisation"
     -DCMAKE_INSTALL_MESSAGE=NEVER
     -DPython3_EXECUTABLE="$venv/bin/python"
     -DPYTHON_EXECUTABLE="$venv/bin/python"

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from studies import ROBOTS, table
 
-from inverse_dynamics.contact.contacts import find_contacts
+from inverse_dynamics.contacts.contacts import find_contacts
 from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.identify import identify
 from inverse_dynamics.public_recordings.public_recordings import data_directory

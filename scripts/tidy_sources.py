@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints the C++ sources that a change touches, or all of them; called by `./scripts/lint tidy`.
+"""Prints the C++ sources and headers that a change touches, or all; called by `./scripts/lint tidy`.
 
 Usage: python3 tidy_sources.py COMMIT|all
 
-A change touches a source that differs from COMMIT, or that includes a header that does. First writes
-build/clang_tidy/compile_commands.json: how each source is compiled by itself, also where the build
-compiles several at a time (a unity build).
+A change touches a file that differs from COMMIT, and a source that includes a header that does. First
+writes build/clang_tidy/compile_commands.json: how each source is compiled by itself, also where the build
+compiles several at a time (a unity build), and each header: as a source of its package that includes it.
 """
 
 import json
@@ -14,10 +14,12 @@ import re
 import shlex
 import subprocess
 import sys
+from os.path import commonpath
 from pathlib import Path
 
 INCLUDE = re.compile(r'^#include "(.*\.cpp)"$', re.MULTILINE)
 GCC_ONLY = {"-flive-range-shrinkage"}  # an error for Clang
+AS_SOURCE = ["-Wno-pragma-once-outside-header", "-x", "c++", "-c"]
 
 
 def git(*arguments: str) -> list[str]:
@@ -42,10 +44,30 @@ def own_commands(entry: dict[str, str]) -> list[dict[str, str]]:
     return [{**entry, "file": file, "command": shlex.join(own[file])} for file in own]
 
 
+def header_command(header: str, sources: list[dict[str, str]]) -> dict[str, str] | None:
+    """Compiles a header by itself, if its package is part of the build."""
+    path = str(Path.cwd() / header)
+    package = f"{Path.cwd() / header.split('/')[0]}/"
+    of_package = [entry for entry in sources if entry["file"].startswith(package)]
+    if not of_package:
+        return None
+
+    def nearness(source: str) -> tuple[bool, int]:
+        return f'{Path(header).name}"' in Path(source).read_text(), len(commonpath([source, path]))
+
+    near = max(of_package, key=lambda entry: nearness(entry["file"]))
+    words = shlex.split(near["command"])
+    place = words.index(near["file"])  # after -c
+    return {**near, "file": path, "command": shlex.join([*words[: place - 1], *AS_SOURCE, path])}
+
+
 database = Path("build/clang_tidy/compile_commands.json")
 database.parent.mkdir(exist_ok=True)
 entries = json.loads(Path("build/compile_commands.json").read_text())
-database.write_text(json.dumps([own for entry in entries for own in own_commands(entry)], indent=1))
-sources = git("ls-files", "*/src/*.cpp")
-chosen = sources if sys.argv[1] == "all" else sorted(touched(sys.argv[1]).intersection(sources))
-sys.stdout.writelines(f"{source}\n" for source in chosen)
+commands = [own for entry in entries for own in own_commands(entry)]
+headers = git("ls-files", "*/include/*.hpp", "*/src/*.hpp", "*/test/*.hpp", ":!:*/without_ros/*")
+of_headers = [header_command(header, commands) for header in headers]
+database.write_text(json.dumps([*commands, *filter(None, of_headers)], indent=1))
+files = [*git("ls-files", "*/src/*.cpp", "*/test/*.cpp"), *headers]
+chosen = files if sys.argv[1] == "all" else sorted(touched(sys.argv[1]).intersection(files))
+sys.stdout.writelines(f"{file}\n" for file in chosen)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.terminal.options import Options
     from inverse_dynamics_benchmarks import Measurement
 
-GROUP = "share"
+PLACE = ("share", 4)
 SUMMARY = "measure this machine beside KDL, Pinocchio and MuJoCo"
 DESCRIPTION = "Time this library, KDL, Pinocchio and MuJoCo on this machine."
 EPILOG = """\

@@ -7,10 +7,13 @@
 //     casadi_code URDF NAME FILE.c      functions NAME_QUANTITY_templates, NAME_QUANTITY_textbook
 
 #include <casadi/casadi.hpp>
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/dynamic_components.hpp>
 #include <chain_dynamics/torques.hpp>
 #include <chain_dynamics/urdf.hpp>
 #include <cmath>
+#include <cstddef>
+#include <exception>
 #include <fstream>
 #include <iostream>
 #include <sstream>

@@ -2,7 +2,10 @@
 
 // C that CasADi generated and GCC compiled when the benchmarks were built: casadi_code.cpp.
 
+#include <benchmark/benchmark.h>
+
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <stdexcept>
 #include <string>

@@ -3,6 +3,9 @@
 
 #include <chain_dynamics/fast_model.hpp>
 #include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "peers.hpp"
 

@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine_benchmarks.hpp"
 
+#include <benchmark/benchmark.h>
+
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/model.hpp>
+#include <chain_dynamics/regressor_gram.hpp>
+#include <chain_dynamics/spatial.hpp>
+#include <chain_dynamics/states.hpp>
 #include <memory>
+#include <string>
 
 #include "states.hpp"
 #include "timing.hpp"

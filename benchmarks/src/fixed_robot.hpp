@@ -4,7 +4,10 @@
 /// A solver whose robot can't carry anything: what the possibility of a payload costs.
 #pragma once
 
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/model.hpp>
+#include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <string>

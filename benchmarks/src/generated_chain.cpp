@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <ostream>
 #include <random>
 #include <sstream>
+#include <string>
 
 namespace inverse_dynamics_benchmarks {
 namespace {

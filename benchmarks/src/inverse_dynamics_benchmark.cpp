@@ -6,8 +6,11 @@
 
 #include <benchmark/benchmark.h>
 
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/urdf.hpp>
 #include <cstdint>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/parameters.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <map>
 #include <memory>

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <iostream>
+#include <ostream>
 #include <string>
 #include <vector>
 

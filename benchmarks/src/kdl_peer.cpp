@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <benchmark/benchmark.h>
 #include <kdl/config.h>
 
+#include <chain_dynamics/chain.hpp>
+#include <cstddef>
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
+#include <kdl/frames.hpp>
+#include <kdl/jntarray.hpp>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "kdl_chain.hpp"

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <benchmark/benchmark.h>
 #include <mujoco/mujoco.h>
 
 #include <array>
 #include <memory>
 #include <stdexcept>
+#include <string>
 
 #include "peers.hpp"
 #include "states.hpp"

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "observer_benchmarks.hpp"
 
+#include <benchmark/benchmark.h>
+
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_control/acceleration_residual.hpp>
+#include <inverse_dynamics_control/external_torque_estimator.hpp>
 #include <inverse_dynamics_control/momentum_observer.hpp>
+#include <inverse_dynamics_control/signals.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "states.hpp"

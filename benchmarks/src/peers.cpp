@@ -3,6 +3,7 @@
 
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace inverse_dynamics_benchmarks {
 

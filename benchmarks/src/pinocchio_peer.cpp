@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chain_dynamics/chain.hpp>
 #include <memory>
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/crba.hpp>
@@ -6,6 +7,7 @@
 #include <pinocchio/algorithm/regressor.hpp>
 #include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
+#include <string>
 
 #include "peers.hpp"
 #include "pinocchio_model.hpp"

@@ -17,11 +17,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <inverse_dynamics_evaluation/joint_state_source.hpp>
 #include <inverse_dynamics_evaluation/joint_state_writer.hpp>
 #include <inverse_dynamics_evaluation/recording.hpp>
 #include <stdexcept>

@@ -5,6 +5,8 @@
 #include <inverse_dynamics_solver/installed_package.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "generated_chain.hpp"
 

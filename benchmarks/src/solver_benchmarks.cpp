@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver_benchmarks.hpp"
 
+#include <benchmark/benchmark.h>
+
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/payload.hpp>
 #include <inverse_dynamics_solver/variable_gravity.hpp>
+#include <memory>
+#include <string>
 
 #include "states.hpp"
 #include "timing.hpp"

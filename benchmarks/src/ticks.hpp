@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <ratio>
 
 #ifdef __x86_64__
 #include <x86intrin.h>

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
 #include <inverse_dynamics_solver/forward_dynamics.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <iostream>
 #include <iterator>

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import MotionLimits as MotionLimits
     from inverse_dynamics._core import Solver as Solver
     from inverse_dynamics._core import available_solvers as available_solvers
-    from inverse_dynamics.contact.contacts import Contacts as Contacts
-    from inverse_dynamics.contact.contacts import find_contacts as find_contacts
+    from inverse_dynamics.contacts.contacts import Contacts as Contacts
+    from inverse_dynamics.contacts.contacts import find_contacts as find_contacts
     from inverse_dynamics.diagnosis.diagnose import diagnose as diagnose
     from inverse_dynamics.errors import UserError as UserError
     from inverse_dynamics.evaluation.evaluation import Evaluation as Evaluation
@@ -77,7 +77,7 @@ if TYPE_CHECKING:
 
 _MODULES = {  # and the names that users know
     "_core": ("FastModel", "JointPath", "MotionLimits", "Solver", "available_solvers"),
-    "contact.contacts": ("Contacts", "find_contacts"),
+    "contacts.contacts": ("Contacts", "find_contacts"),
     "diagnosis.diagnose": ("diagnose",),
     "errors": ("UserError",),
     "evaluation.evaluation": ("Evaluation", "JointError", "evaluate", "evaluate_run"),

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `ids`: verbs, errors, exit codes.
 
-A verb NAME is a module verb_NAME.py in the folder of its feature, with GROUP and SUMMARY (its place and line in the
-list of verbs), EPILOG (examples, a paragraph each), perhaps DESCRIPTION, `declare(options)` and `run(arguments)`,
-which imports what is heavy. Its line stands in docs/command_line.md. A package that is built on request brings its
-verb.
+A verb NAME is a module verb_NAME.py in the folder of its feature, with PLACE and SUMMARY (its group, place in it,
+and line in the list of verbs), EPILOG (examples, a paragraph each), perhaps DESCRIPTION, `declare(options)` and
+`run(arguments)`, which imports what is heavy. Its line stands in docs/command_line.md. A package that is built on
+request brings its verb.
 Exit code 0: done; 2: something that the user can correct, named on stderr (without a verb: the help);
 3: some of several recordings failed, the others are done; 1: an unexpected error, with a report in a
 file; 128 + n: ended by signal n (141: the reader of the output has gone).
@@ -158,16 +158,19 @@ def make_parser() -> argparse.ArgumentParser:
         prog="ids", metavar="VERB", required=True, help=argparse.SUPPRESS
     )
     modules = {verb: import_module(module) for verb, module in verb_modules().items()}
-    rows = []
-    for group in GROUPS:
-        title = group
-        for verb, module in modules.items():
-            if group == module.GROUP:
-                _add_verb(subparsers, verb, module)
-                rows.append(f"{title:<9} {verb:<10}  {module.SUMMARY}")
-                title = ""
+    rows, last = [], ""
+    for verb, module in sorted(modules.items(), key=_place):
+        _add_verb(subparsers, verb, module)
+        group, _ = module.PLACE
+        rows.append(f"{'' if group == last else group:<9} {verb:<10}  {module.SUMMARY}")
+        last = group
     parser.description = "\n".join((parser.description or "", "", *rows))
     return parser
+
+
+def _place(verb: tuple[str, Any]) -> tuple[int, int]:
+    group, number = verb[1].PLACE
+    return GROUPS.index(group), number
 
 
 def verb_modules() -> dict[str, str]:

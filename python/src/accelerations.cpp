@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <inverse_dynamics_evaluation/accelerations.hpp>
+#include <inverse_dynamics_evaluation/sample_table.hpp>
 #include <inverse_dynamics_evaluation/samples.hpp>
 #include <memory>
 #include <tuple>

@@ -6,8 +6,10 @@
 
 #include <pybind11/numpy.h>
 
+#include <cstddef>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace inverse_dynamics_tools {

@@ -112,9 +112,9 @@ py::handle functionType() {
   static PyType_Spec spec = {
       "inverse_dynamics._core.function", sizeof(Function), 0,
       Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_VECTORCALL | Py_TPFLAGS_METHOD_DESCRIPTOR, slots};
-  static PyObject* const type = PyType_FromSpec(&spec);
-  if (type == nullptr) throw py::error_already_set();
-  return type;
+  static PyObject* const kType = PyType_FromSpec(&spec);
+  if (kType == nullptr) throw py::error_already_set();
+  return kType;
 }
 
 py::object explained(const py::object& bound, const std::string& place) {

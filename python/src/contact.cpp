@@ -2,6 +2,9 @@
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/external_wrench.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>

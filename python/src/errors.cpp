@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <chain_dynamics/error.hpp>
+#include <cstddef>
 #include <cstring>
 #include <exception>
 #include <inverse_dynamics_evaluation/error.hpp>

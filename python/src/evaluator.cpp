@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <inverse_dynamics_evaluation/accelerations.hpp>
 #include <inverse_dynamics_evaluation/effort.hpp>
+#include <inverse_dynamics_evaluation/error.hpp>
 #include <inverse_dynamics_evaluation/evaluator.hpp>
+#include <inverse_dynamics_evaluation/metrics.hpp>
+#include <inverse_dynamics_evaluation/recording.hpp>
+#include <inverse_dynamics_evaluation/sample_table.hpp>
+#include <inverse_dynamics_evaluation/samples.hpp>
 #include <optional>
 #include <string>
 #include <utility>

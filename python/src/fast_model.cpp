@@ -2,11 +2,15 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/friction_laws/smooth_coulomb.hpp>
+#include <chain_dynamics/model.hpp>
 #include <chain_dynamics/model_file.hpp>
 #include <chain_dynamics/regressor.hpp>
 #include <chain_dynamics/share_states.hpp>
 #include <chain_dynamics/urdf.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <memory>
@@ -134,7 +138,7 @@ std::unique_ptr<FastModel> identified(const FastModel& engine, const IdentifiedM
     model.coupling = states(coupling.cast<Array>(), "coupling").transpose();
   }
   model.torque_deviation = Eigen::Map<const Eigen::VectorXd>(bands.data(), n);
-  model.seen = ranges;
+  model.seen = std::move(ranges);
   return std::make_unique<FastModel>(model, engine.threads());
 }
 

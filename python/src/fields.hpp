@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <array>
+#include <chain_dynamics/owned.hpp>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frames.hpp"
 
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/robot_description.hpp>
+#include <chain_dynamics/states.hpp>
 #include <chain_dynamics/text.hpp>
 #include <chain_dynamics/tip_kinematics.hpp>
 #include <chain_dynamics/urdf.hpp>
+#include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <memory>
+#include <mutex>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace inverse_dynamics_tools {
 namespace {

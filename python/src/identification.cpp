@@ -4,8 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <chain_dynamics/error.hpp>
+#include <chain_dynamics/owned.hpp>
 #include <chain_dynamics/urdf.hpp>
+#include <cstddef>
 #include <inverse_dynamics_identification/arm_fit.hpp>
+#include <inverse_dynamics_identification/friction_step.hpp>
+#include <inverse_dynamics_identification/pseudo_inertia.hpp>
+#include <inverse_dynamics_identification/residual_noise.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
 #include <map>
 #include <memory>
 #include <optional>

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/parameters.hpp>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,11 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <inverse_dynamics_identification/arm_uncertainty.hpp>
+#include <inverse_dynamics_identification/friction_step.hpp>
 #include <inverse_dynamics_identification/payload_estimator.hpp>
+#include <inverse_dynamics_identification/residual_noise.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <mutex>
 #include <string>

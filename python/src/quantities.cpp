@@ -3,13 +3,16 @@
 
 #include <map>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace inverse_dynamics_tools {
 namespace {
 
 /// Type and meaning of an argument.
 const std::map<std::string, std::pair<const char*, const char*>>& argumentTexts() {
-  static const std::map<std::string, std::pair<const char*, const char*>> texts = {
+  static const std::map<std::string, std::pair<const char*, const char*>> kTexts = {
       {"q", {"array_like, (n,) or (N, n)", "Positions, rad (prismatic m)."}},
       {"qd", {"array_like, (n,) or (N, n)", "Velocities, rad/s (prismatic m/s)."}},
       {"qdd", {"array_like, (n,) or (N, n)", "Accelerations, rad/s^2 (prismatic m/s^2)."}},
@@ -23,7 +26,7 @@ const std::map<std::string, std::pair<const char*, const char*>>& argumentTexts(
        {"ndarray of float64, optional",
         "Takes the result; of any layout that shares no memory with an argument."}},
   };
-  return texts;
+  return kTexts;
 }
 
 }  // namespace

@@ -5,9 +5,12 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <inverse_dynamics_evaluation/joint_state_source.hpp>
 #include <inverse_dynamics_evaluation/joint_state_writer.hpp>
 #include <inverse_dynamics_evaluation/recording.hpp>
+#include <inverse_dynamics_evaluation/sample_table.hpp>
 #include <memory>
 #include <string>
 #include <tuple>

@@ -2,9 +2,15 @@
 #include "solver_call.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/states.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "arrays.hpp"
 
@@ -14,6 +20,7 @@ namespace {
 namespace py = pybind11;
 namespace ids = inverse_dynamics_solver;
 /// Doubles at addresses of doubles.
+// NOLINTNEXTLINE(bugprone-suspicious-enum-usage): pybind11 has these flags in two enumerations
 using Doubles = py::array_t<double, py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
 Shape shapeOf(const py::array& array) { return {array.shape(), array.shape() + array.ndim()}; }

@@ -16,6 +16,7 @@
 #include <pybind11/numpy.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <string>
 #include <vector>

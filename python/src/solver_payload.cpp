@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver_payload.hpp"
 
+#include <chain_dynamics/spatial.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
+#include <string>
 #include <vector>
 
 #include "arrays.hpp"

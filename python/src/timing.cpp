@@ -2,7 +2,10 @@
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_timing/path.hpp>
 #include <inverse_dynamics_timing/retime.hpp>
+#include <inverse_dynamics_timing/trajectory.hpp>
+#include <utility>
 #include <vector>
 
 #include "annotations.hpp"

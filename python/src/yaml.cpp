@@ -4,6 +4,7 @@
 #include <chain_dynamics/located_yaml.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bindings.hpp"
 #include "description.hpp"

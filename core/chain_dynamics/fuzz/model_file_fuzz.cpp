@@ -3,6 +3,7 @@
 /// @file
 /// Any text as a model file: a model that can be computed with, or an error that names the place.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>

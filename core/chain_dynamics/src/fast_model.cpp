@@ -3,6 +3,10 @@
 #include "chain_dynamics/fast_model.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "chain_dynamics/error.hpp"
 #include "fast/regroup.hpp"

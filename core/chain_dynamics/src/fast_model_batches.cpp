@@ -2,7 +2,9 @@
 
 // FastModel's functions of many states.
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/fast_model.hpp"

@@ -2,6 +2,11 @@
 
 #include "fast_model_check.hpp"
 
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/regressor.hpp"
 #include "chain_dynamics/tip_kinematics.hpp"

@@ -3,6 +3,11 @@
 #include "chain_dynamics/friction.hpp"
 
 #include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "chain_dynamics/error.hpp"
 

@@ -7,9 +7,14 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "chain_dynamics/error.hpp"
 #include "located_yaml.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <string>
 
 #include "chain_dynamics/coriolis_matrix.hpp"

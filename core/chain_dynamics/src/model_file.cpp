@@ -3,6 +3,7 @@
 #include "chain_dynamics/model_file.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>

@@ -3,9 +3,12 @@
 #include "model_file_joint.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "joint_frame.hpp"
 

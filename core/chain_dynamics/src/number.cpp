@@ -3,9 +3,13 @@
 #include "number.hpp"
 
 #include <charconv>
+#include <cstddef>
 #include <locale>
+#include <optional>
 #include <sstream>
+#include <string>
 #include <string_view>
+#include <system_error>
 
 namespace chain_dynamics {
 inline namespace v2 {

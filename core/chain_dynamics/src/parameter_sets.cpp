@@ -2,7 +2,9 @@
 
 #include "chain_dynamics/parameter_sets.hpp"
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "chain_dynamics/error.hpp"
 

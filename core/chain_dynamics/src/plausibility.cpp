@@ -5,6 +5,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 #include "chain_dynamics/gravity_vector.hpp"
 #include "chain_dynamics/text.hpp"

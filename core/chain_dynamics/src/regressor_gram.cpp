@@ -3,6 +3,7 @@
 #include "chain_dynamics/regressor_gram.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <string>
 

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <map>
 #include <string>
 #include <utility>

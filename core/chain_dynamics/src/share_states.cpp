@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chain_dynamics/share_states.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <functional>
 #include <future>
 #include <vector>
 

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "utf8.hpp"
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -66,6 +67,7 @@ std::size_t linkNamed(const RobotDescription& robot, const std::string& name,
   if (link != kNone) return link;
   constexpr std::size_t kShown = 8;
   std::vector<std::pair<std::size_t, std::string>> known;
+  known.reserve(robot.links.size());
   for (const Link& other : robot.links) {
     known.emplace_back(editDistance(name, other.name), other.name);
   }

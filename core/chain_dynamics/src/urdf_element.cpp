@@ -2,8 +2,14 @@
 
 #include "urdf_element.hpp"
 
+#include <tinyxml2.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "chain_dynamics/text.hpp"
 #include "number.hpp"

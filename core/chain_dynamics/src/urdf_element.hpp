@@ -12,6 +12,7 @@
 #include <tinyxml2.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>

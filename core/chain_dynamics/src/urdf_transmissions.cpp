@@ -2,7 +2,10 @@
 
 #include "urdf_transmissions.hpp"
 
+#include <tinyxml2.h>
+
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>

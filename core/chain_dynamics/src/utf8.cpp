@@ -3,6 +3,9 @@
 #include "utf8.hpp"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
 
 namespace chain_dynamics {
 inline namespace v2 {

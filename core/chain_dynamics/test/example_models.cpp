@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "example_models.hpp"
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "chain_dynamics/model_file.hpp"
 #include "chain_dynamics/urdf.hpp"
 

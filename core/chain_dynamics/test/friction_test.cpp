@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <cfenv>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 

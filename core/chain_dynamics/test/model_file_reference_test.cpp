@@ -4,8 +4,10 @@
 // solver's tests.
 
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 
 #include "model_file_texts.hpp"

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <locale>
 #include <sstream>

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 
 #include "chain_dynamics/model_file.hpp"

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 
 #include "chain_dynamics/friction.hpp"

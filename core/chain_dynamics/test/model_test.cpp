@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "allocation_guard.hpp"
 #include "chain_dynamics/dynamic_components.hpp"

@@ -2,10 +2,16 @@
 
 #include "quantities.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "chain_dynamics/coriolis_matrix.hpp"
 #include "chain_dynamics/regressor.hpp"

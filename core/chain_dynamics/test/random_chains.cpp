@@ -3,7 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdint>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace chain_dynamics::test {
 

@@ -8,10 +8,13 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
+
+#include "chain_dynamics/error.hpp"
 
 namespace chain_dynamics {
 

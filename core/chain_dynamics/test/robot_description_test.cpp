@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
 #include <ctime>
 #include <string>
 #include <utility>

@@ -15,6 +15,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace inverse_dynamics_solver {

@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/changeable_robot.hpp"
 
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <utility>
+
 #include "chain_dynamics/error.hpp"
+#include "chain_dynamics/model.hpp"
+#include "chain_dynamics/spatial.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace inverse_dynamics_solver {

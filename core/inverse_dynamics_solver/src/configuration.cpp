@@ -2,10 +2,21 @@
 #include "inverse_dynamics_solver/configuration.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/gravity.hpp"
+#include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
 #include "chain_dynamics/urdf.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"

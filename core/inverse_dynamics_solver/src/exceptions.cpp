@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/exceptions.hpp"
 
+#include <string>
+
 #include "chain_dynamics/text.hpp"
 
 namespace inverse_dynamics_solver {

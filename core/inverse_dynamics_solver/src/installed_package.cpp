@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/installed_package.hpp"
 
+#include <string>
+
 #include "ament_index.hpp"
 #include "chain_dynamics/text.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"

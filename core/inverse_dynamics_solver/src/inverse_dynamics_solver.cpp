@@ -2,7 +2,9 @@
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/chain.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "inverse_dynamics_solver/plausibility.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/kinematics.hpp"
 
+#include <chain_dynamics/spatial.hpp>
+
 #include "method_call.hpp"
 #include "one_state.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "method_call.hpp"
 
+#include <functional>
 #include <string>
 
 #include "chain_dynamics/text.hpp"

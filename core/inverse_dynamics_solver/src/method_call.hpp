@@ -12,7 +12,10 @@
 
 #include <Eigen/Core>
 #include <chain_dynamics/share_states.hpp>
+#include <cstdint>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 

@@ -2,6 +2,18 @@
 #include "inverse_dynamics_solver/parameters.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "inverse_dynamics_solver/exceptions.hpp"
 

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
 #include "chain_dynamics/located_yaml.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"

@@ -2,8 +2,11 @@
 #include "inverse_dynamics_solver/payload.hpp"
 
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/spatial.hpp"
 #include "chain_dynamics/text.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 

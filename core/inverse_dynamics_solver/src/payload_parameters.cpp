@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "chain_dynamics/text.hpp"
 #include "inverse_dynamics_solver/payload.hpp"

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 
+#include <cstddef>
+#include <memory>
 #include <new>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/friction.hpp"
+#include "chain_dynamics/friction_laws/coefficients.hpp"
 #include "chain_dynamics/model.hpp"
 
 namespace inverse_dynamics_solver {
@@ -28,6 +34,7 @@ auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
   DescriptionFriction friction = descriptionFriction(configuration, chain);
   info.warnings.insert(info.warnings.end(), friction.warnings.begin(), friction.warnings.end());
   std::vector<chain_dynamics::FrictionForm> laws;
+  laws.reserve(friction.laws.size());
   for (const auto& law : friction.laws) laws.push_back(law.form());
   configuration.rejectOthers();
 

@@ -2,11 +2,15 @@
 #include "inverse_dynamics_solver/solver_loader.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <pluginlib/class_loader.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "ament_index.hpp"
 #include "chain_dynamics/text.hpp"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/torque_deviation.hpp"
 
+#include <chain_dynamics/model.hpp>
+#include <vector>
+
 #include "method_call.hpp"
 
 namespace inverse_dynamics_solver {

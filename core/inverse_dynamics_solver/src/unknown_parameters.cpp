@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 #include "chain_dynamics/text.hpp"
 #include "inverse_dynamics_solver/configuration.hpp"

@@ -2,7 +2,10 @@
 #include "inverse_dynamics_solver/workspace_pool.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <thread>
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {

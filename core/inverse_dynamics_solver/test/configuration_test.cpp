@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <chain_dynamics/chain.hpp>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "inverse_dynamics_solver/exceptions.hpp"
 

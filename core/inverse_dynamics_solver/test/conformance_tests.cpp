@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
+#include <ostream>
+
 #include "inverse_dynamics_solver/conformance/batch_tests.hpp"
 #include "inverse_dynamics_solver/conformance/capability_tests.hpp"
 #include "inverse_dynamics_solver/conformance/contract_tests.hpp"

@@ -6,7 +6,9 @@
 #include <sys/wait.h>
 
 #include <cctype>
+#include <cstdio>
 #include <cstdlib>
+#include <ostream>
 #include <string>
 
 namespace {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <type_traits>
 
 namespace inverse_dynamics_solver::exceptions_test {

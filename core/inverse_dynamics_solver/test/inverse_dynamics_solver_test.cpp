@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <string>
+#include <tuple>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 #include "inverse_dynamics_solver/external_wrench.hpp"

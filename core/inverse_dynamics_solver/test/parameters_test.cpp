@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <locale>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "node_parameters_stand_in.hpp"

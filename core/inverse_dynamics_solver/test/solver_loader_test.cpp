@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <memory>
 #include <pluginlib/class_loader.hpp>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace inverse_dynamics_solver::solver_loader_test {
 

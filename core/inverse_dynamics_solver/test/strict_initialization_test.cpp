@@ -4,7 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/computed_torque.hpp"
 
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "option_checks.hpp"

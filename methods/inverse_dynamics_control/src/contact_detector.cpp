@@ -5,6 +5,8 @@
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "option_checks.hpp"
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/contact_sensing.hpp"
 
+#include <chain_dynamics/spatial.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
+#include <memory>
 #include <utility>
 
 namespace inverse_dynamics_control {

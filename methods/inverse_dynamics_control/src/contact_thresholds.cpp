@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "option_checks.hpp"
 

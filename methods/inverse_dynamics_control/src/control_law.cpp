@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/control_law.hpp"
 
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "option_checks.hpp"

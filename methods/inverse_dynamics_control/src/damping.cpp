@@ -3,6 +3,8 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <string>
 
 #include "inverse_dynamics_control/model_terms.hpp"
 #include "option_checks.hpp"

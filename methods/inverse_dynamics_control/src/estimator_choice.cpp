@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/estimator_choice.hpp"
 
+#include <memory>
 #include <utility>
 
 #include "inverse_dynamics_control/acceleration_residual.hpp"

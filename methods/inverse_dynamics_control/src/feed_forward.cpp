@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/feed_forward.hpp"
 
+#include <memory>
 #include <utility>
 
 namespace inverse_dynamics_control {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <string>
 
 #include "option_checks.hpp"
 

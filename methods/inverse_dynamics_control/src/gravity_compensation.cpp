@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/gravity_compensation.hpp"
 
+#include <memory>
 #include <utility>
 
 namespace inverse_dynamics_control {

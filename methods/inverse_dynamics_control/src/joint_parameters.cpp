@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/joint_parameters.hpp"
 
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/error.hpp>
 #include <chain_dynamics/robot_description.hpp>
 #include <chain_dynamics/text.hpp>
+#include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <string>
+#include <vector>
 
 namespace inverse_dynamics_control {
 inline namespace v2 {

@@ -2,8 +2,14 @@
 #include "inverse_dynamics_control/model_terms.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/owned.hpp>
 #include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "option_checks.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/momentum_observer.hpp"
 
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <memory>
 #include <string>
 #include <utility>
 

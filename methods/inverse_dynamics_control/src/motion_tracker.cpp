@@ -2,9 +2,11 @@
 #include "inverse_dynamics_control/motion_tracker.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/chain.hpp>
 #include <cmath>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace inverse_dynamics_control {
 inline namespace v2 {

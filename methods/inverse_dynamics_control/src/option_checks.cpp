@@ -2,8 +2,12 @@
 #include "option_checks.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/text.hpp>
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <string>
+#include <vector>
 
 namespace inverse_dynamics_control {
 inline namespace v2 {

@@ -3,7 +3,12 @@
 
 #include <algorithm>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
+#include <memory>
+#include <mutex>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace inverse_dynamics_control {
 inline namespace v2 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/pd_gravity_compensation.hpp"
 
+#include <memory>
 #include <string>
 #include <utility>
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/reference_guard.hpp"
 
+#include <chain_dynamics/chain.hpp>
 #include <cmath>
 #include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "option_checks.hpp"
 

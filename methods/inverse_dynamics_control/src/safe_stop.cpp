@@ -2,6 +2,8 @@
 #include "inverse_dynamics_control/safe_stop.hpp"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "option_checks.hpp"
 

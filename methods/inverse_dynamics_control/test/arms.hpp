@@ -4,12 +4,17 @@
 /// them.
 #pragma once
 
+#include <algorithm>
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/coriolis_vector.hpp>
 #include <chain_dynamics/dynamic_components.hpp>
 #include <chain_dynamics/gravity_vector.hpp>
 #include <chain_dynamics/inertia_matrix.hpp>
 #include <cmath>
+#include <initializer_list>
+#include <inverse_dynamics_solver/configuration.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <limits>
 #include <memory>
 #include <stdexcept>

@@ -3,9 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
 #include <ur10_inverse_dynamics_solver/ur10_inverse_dynamics_solver.hpp>
+#include <utility>
 #include <variant>
+#include <vector>
 
 namespace inverse_dynamics_control::carried_body_test {
 namespace {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <memory>
 #include <ur10_inverse_dynamics_solver/ur10_inverse_dynamics_solver.hpp>
 
 #include "arms.hpp"

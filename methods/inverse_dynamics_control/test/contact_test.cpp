@@ -3,8 +3,13 @@
 // Thresholds for a stated number of false alarms, and the detector that uses them.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstddef>
 #include <functional>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "arms.hpp"
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
 #include <utility>
 
 #include "arms.hpp"

@@ -3,8 +3,14 @@
 // Both estimators of external torques, on arms known in closed form.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <memory>
 #include <random>
+#include <string>
+#include <type_traits>
+#include <utility>
 
 #include "arms.hpp"
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
 #include <ur10_inverse_dynamics_solver/ur10_inverse_dynamics_solver.hpp>
 
 #include "arms.hpp"

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chain_dynamics/friction_laws/viscous_coulomb_offset.hpp>
 #include <chain_dynamics/model.hpp>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "arms.hpp"
 #include "inverse_dynamics_control/model_terms.hpp"

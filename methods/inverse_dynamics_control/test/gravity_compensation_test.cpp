@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "arms.hpp"
 
 namespace inverse_dynamics_control::gravity_compensation_test {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/model.hpp>
 #include <cmath>
 
 #include "arms.hpp"

@@ -5,7 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <inverse_dynamics_solver/payload.hpp>
+#include <memory>
+#include <string>
 #include <ur10_inverse_dynamics_solver/ur10_inverse_dynamics_solver.hpp>
+#include <vector>
 
 #include "arms.hpp"
 

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <memory>
+
 #include "arms.hpp"
 #include "inverse_dynamics_control/computed_torque.hpp"
 #include "inverse_dynamics_control/feed_forward.hpp"

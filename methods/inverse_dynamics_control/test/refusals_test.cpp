@@ -3,6 +3,11 @@
 // Whatever goes in, what comes out is finite and within the limits.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
 #include "arms.hpp"
 
 namespace inverse_dynamics_control::refusals_test {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "arms.hpp"
 
 namespace inverse_dynamics_control::safe_stop_test {

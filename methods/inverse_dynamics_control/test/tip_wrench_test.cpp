@@ -4,8 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chain_dynamics/spatial.hpp>
+#include <cmath>
 #include <functional>
+#include <inverse_dynamics_solver/configuration.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
+#include <memory>
 #include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "arms.hpp"
 

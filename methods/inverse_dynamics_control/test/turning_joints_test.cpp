@@ -4,7 +4,11 @@
 /// guards and estimators give the numbers of unbounded ones.
 #include <gtest/gtest.h>
 
+#include <chain_dynamics/chain.hpp>
+#include <cmath>
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include "arms.hpp"
 

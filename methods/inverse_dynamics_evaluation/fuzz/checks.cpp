@@ -3,11 +3,14 @@
 #include "checks.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <ios>
+#include <string>
 
 namespace inverse_dynamics_evaluation::fuzz {
 namespace {

@@ -8,8 +8,12 @@
 
 #include <algorithm>
 #include <climits>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "checks.hpp"
 #include "joint_state_decoder.hpp"

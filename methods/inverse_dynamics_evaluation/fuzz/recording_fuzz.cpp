@@ -6,12 +6,17 @@
 
 #include <algorithm>
 #include <climits>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <inverse_dynamics_evaluation/sample_table.hpp>
+#include <ios>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "checks.hpp"
 #include "inverse_dynamics_evaluation/joint_state_writer.hpp"

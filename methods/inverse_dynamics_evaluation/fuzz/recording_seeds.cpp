@@ -6,12 +6,17 @@
 #include <sqlite3.h>
 #include <zstd.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <ios>
 #include <iterator>
 #include <regex>
+#include <string>
+#include <utility>
 
 #include "bytes.hpp"
 #include "inverse_dynamics_evaluation/joint_state_writer.hpp"

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <ios>
 #include <string>
 
 #include "inverse_dynamics_evaluation/accelerations.hpp"

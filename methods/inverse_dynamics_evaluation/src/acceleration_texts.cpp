@@ -2,6 +2,10 @@
 
 // Accelerations in words.
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "figures.hpp"
 #include "filtering.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/motor_currents.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "figures.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"

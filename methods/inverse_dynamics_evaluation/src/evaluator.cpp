@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "checks.hpp"
 #include "figures.hpp"

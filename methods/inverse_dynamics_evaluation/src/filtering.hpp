@@ -6,6 +6,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
+#include <vector>
 
 #include "inverse_dynamics_evaluation/accelerations.hpp"
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
+#include <cstddef>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {

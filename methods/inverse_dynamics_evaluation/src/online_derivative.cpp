@@ -3,6 +3,7 @@
 #include "inverse_dynamics_evaluation/online_derivative.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "inverse_dynamics_evaluation/error.hpp"

@@ -3,9 +3,11 @@
 #include "inverse_dynamics_evaluation/package_share.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <inverse_dynamics_solver/installed_package.hpp>
+#include <string>
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "inverse_dynamics_evaluation/error.hpp"
 

@@ -3,10 +3,19 @@
 // Run configurations as files have them.
 
 #include <algorithm>
+#include <array>
+#include <chain_dynamics/located_yaml.hpp>
 #include <chain_dynamics/text.hpp>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <inverse_dynamics_solver/parameters.hpp>
+#include <optional>
 #include <set>
+#include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"

@@ -9,7 +9,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <new>
+#include <string>
 #include <system_error>
 #include <utility>
 

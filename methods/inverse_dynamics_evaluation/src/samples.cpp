@@ -3,12 +3,14 @@
 #include "inverse_dynamics_evaluation/samples.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/chain.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "pi.hpp"

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <cstddef>
+#include <vector>
 
 #include "pi.hpp"
 
@@ -189,7 +192,7 @@ std::vector<Index> segmentBegins(Index samples, Index length) {
 }  // namespace
 
 SpectrumSums::SpectrumSums(Index joints, Index longest, double sampling_frequency)
-    : sampling_frequency_(sampling_frequency), length_(kLeastStretch) {
+    : sampling_frequency_(sampling_frequency) {
   while (static_cast<double>(2 * length_) <= kSegmentSeconds * sampling_frequency &&
          length_ < longest) {
     length_ *= 2;

@@ -63,7 +63,7 @@ class SpectrumSums {
   void add(const Eigen::ArrayXd& velocity, const Eigen::ArrayXd& rate, Eigen::Index j);
 
   double sampling_frequency_;
-  Eigen::Index length_;  // of a segment
+  Eigen::Index length_ = kLeastStretch;  // of a segment
   double samples_ = 0, moving_ = 0;
   VelocitySpectra spectra_;
   Eigen::FFT<double> fft_;

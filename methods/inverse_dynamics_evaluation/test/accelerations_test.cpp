@@ -4,7 +4,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <random>
+#include <stdexcept>
+#include <vector>
 
 #include "error_of.hpp"
 #include "filtering.hpp"

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"

@@ -7,8 +7,13 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <inverse_dynamics_evaluation/error.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "error_of.hpp"
 #include "joint_state_block.hpp"

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <stdexcept>
 
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/accelerations.hpp"

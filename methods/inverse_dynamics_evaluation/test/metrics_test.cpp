@@ -5,7 +5,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <stdexcept>
+#include <vector>
 
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"

@@ -7,13 +7,21 @@
 #include <unistd.h>
 #include <zstd.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <inverse_dynamics_evaluation/error.hpp>
+#include <ios>
+#include <iterator>
+#include <optional>
 #include <random>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/joint_state_writer.hpp"

@@ -5,10 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <inverse_dynamics_solver/parameters.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "inverse_dynamics_evaluation/package_share.hpp"

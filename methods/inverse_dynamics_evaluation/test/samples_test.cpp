@@ -4,7 +4,12 @@
 
 #include <gmock/gmock.h>
 
+#include <cstddef>
 #include <limits>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
 
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"

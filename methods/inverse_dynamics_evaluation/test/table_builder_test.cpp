@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdint>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/sample_table.hpp"

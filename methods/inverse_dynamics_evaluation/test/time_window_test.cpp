@@ -2,7 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/sample_table.hpp"

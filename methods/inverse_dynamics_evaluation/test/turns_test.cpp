@@ -2,7 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <chain_dynamics/chain.hpp>
 #include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "inverse_dynamics_evaluation/samples.hpp"
 

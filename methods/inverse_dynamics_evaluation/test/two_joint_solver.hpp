@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cmath>
+#include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 
 namespace inverse_dynamics_evaluation {

@@ -6,6 +6,8 @@
 #include <lz4frame.h>
 #include <zstd.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "crc32.hpp"

@@ -2,12 +2,18 @@
 #include "inverse_dynamics_identification/arm_fit.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/error.hpp>
+#include <chain_dynamics/model.hpp>
+#include <chain_dynamics/regressor_gram.hpp>
+#include <chain_dynamics/states.hpp>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "friction_columns.hpp"
 

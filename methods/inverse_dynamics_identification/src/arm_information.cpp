@@ -4,7 +4,10 @@
 /// Information about an arm's unknowns from samples with correlated errors.
 
 #include <chain_dynamics/error.hpp>
+#include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/model.hpp>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 

@@ -4,8 +4,14 @@
 /// Sums of ArmFitter's samples, and torques.
 
 #include <algorithm>
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/error.hpp>
+#include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/model.hpp>
+#include <chain_dynamics/regressor_gram.hpp>
+#include <chain_dynamics/states.hpp>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>

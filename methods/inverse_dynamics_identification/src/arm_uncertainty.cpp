@@ -2,6 +2,11 @@
 #include "inverse_dynamics_identification/arm_uncertainty.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/regressor.hpp>
+#include <memory>
 #include <string>
 #include <utility>
 

@@ -4,8 +4,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <chain_dynamics/error.hpp>
+#include <chain_dynamics/regressor_gram.hpp>
 #include <cmath>
+#include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "penalties.hpp"
 

@@ -2,6 +2,7 @@
 #include "nuisance.hpp"
 
 #include <Eigen/Cholesky>
+#include <vector>
 
 namespace inverse_dynamics_identification {
 inline namespace v2 {

@@ -3,8 +3,15 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/owned.hpp>
 #include <cmath>
+#include <cstddef>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <chain_dynamics/error.hpp>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 

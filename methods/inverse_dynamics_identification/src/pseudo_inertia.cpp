@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/error.hpp>
 #include <limits>
 #include <sstream>

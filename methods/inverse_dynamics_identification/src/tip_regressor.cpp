@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_identification/tip_regressor.hpp"
 
+#include <chain_dynamics/spatial.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
 #include <inverse_dynamics_solver/variable_gravity.hpp>
+#include <memory>
 #include <string>
 #include <utility>
 

@@ -6,9 +6,14 @@
 #include <Eigen/Cholesky>
 #include <chain_dynamics/error.hpp>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/friction.hpp>
+#include <chain_dynamics/model.hpp>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <random>
 #include <utility>
+#include <vector>
 
 #include "arms.hpp"
 

@@ -4,7 +4,15 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <chain_dynamics/error.hpp>
 #include <chain_dynamics/urdf.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
+#include <random>
 #include <vector>
 
 #include "inverse_dynamics_identification/arm_fit.hpp"

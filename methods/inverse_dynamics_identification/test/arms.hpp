@@ -9,6 +9,8 @@
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
 #include <chain_dynamics/model.hpp>
+#include <chain_dynamics/spatial.hpp>
+#include <cstddef>
 #include <random>
 #include <string>
 #include <utility>

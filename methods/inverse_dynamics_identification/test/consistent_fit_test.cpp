@@ -6,8 +6,13 @@
 #include <Eigen/Cholesky>
 #include <chain_dynamics/error.hpp>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/model.hpp>
+#include <chain_dynamics/regressor_gram.hpp>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <random>
+#include <vector>
 
 #include "arms.hpp"
 #include "penalties.hpp"

@@ -9,6 +9,9 @@
 #include <fstream>
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
 #include <inverse_dynamics_solver/conformance/real_time_section.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
 #include <iterator>
 #include <memory>
 #include <random>

@@ -4,9 +4,18 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <fstream>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
 #include <vector>
 
 #include "inverse_dynamics_identification/tip_regressor.hpp"

@@ -4,8 +4,11 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Cholesky>
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/error.hpp>
+#include <chain_dynamics/spatial.hpp>
 #include <limits>
+#include <random>
 
 #include "arms.hpp"
 

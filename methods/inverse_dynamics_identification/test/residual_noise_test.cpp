@@ -7,6 +7,7 @@
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
 #include <random>
+#include <string>
 
 #include "whitening.hpp"
 

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>
+#include <vector>
 
 namespace inverse_dynamics_timing {
 inline namespace v2 {

@@ -2,10 +2,13 @@
 #include "path_dynamics.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/owned.hpp>
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <inverse_dynamics_solver/kinematics.hpp>
 #include <inverse_dynamics_solver/torque_deviation.hpp>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -155,7 +158,8 @@ VectorXd PathDynamics::excess(const Eigen::Ref<const VectorXd>& z) const {
   std::vector<Place> places;
   for (Index k = 0; k + 1 < points(); ++k) {
     const int count = parts(k);
-    for (int part = 1; part < count; ++part) places.push_back({k, double(part) / count});
+    for (int part = 1; part < count; ++part)
+      places.push_back({k, static_cast<double>(part) / count});
   }
   const Index n = g_.rows(), count = static_cast<Index>(places.size());
   MatrixXd q(n, count), qd(n, count), qdd(n, count), tau(n, count);

@@ -2,7 +2,12 @@
 #include "inverse_dynamics_timing/retime.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/owned.hpp>
 #include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "path_dynamics.hpp"

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <limits>
 #include <vector>

@@ -3,9 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
+#include <string>
 
 namespace {
 

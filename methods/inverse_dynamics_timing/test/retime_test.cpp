@@ -3,10 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <chain_dynamics/model.hpp>
 #include <chain_dynamics/model_file.hpp>
 #include <cmath>
 #include <fstream>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/kinematics.hpp>
 #include <iterator>
 #include <kdl_inverse_dynamics_solver/kdl_inverse_dynamics_solver.hpp>
@@ -14,7 +17,9 @@
 #include <memory>
 #include <random>
 #include <rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "dense_reference.hpp"
 #include "half_planes.hpp"

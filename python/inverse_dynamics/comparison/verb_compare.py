@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.terminal.screen import Line
 
-GROUP = "look"
+PLACE = ("look", 5)
 SUMMARY = "put evaluations of one recording side by side"
 DESCRIPTION = "Put evaluations of one recording side by side: solvers, models, filters."
 EPILOG = """\

@@ -193,7 +193,7 @@ def _simulated(name: str, target: Path, final: Path, quick: bool, progress: Prog
     robot, bag = load_robot(name), f"{name}_bag"
     run = simulate(robot, duration=_QUICK_SECONDS if quick else None, seed=0, progress=progress)
     write_run(run, target / bag, progress=progress)
-    evaluation = evaluate(target / bag, name, progress=progress).explained
+    evaluation = evaluate(target / bag, name, progress=progress)
     solver = evaluation.arm.solver
     note = (
         "with the simulator's own accelerations, computed and measured torques differ by "
@@ -205,7 +205,7 @@ def _simulated(name: str, target: Path, final: Path, quick: bool, progress: Prog
 
 def _stored(name: str) -> Evaluation:
     """Evaluate the simulated recording that comes with the package."""
-    evaluation = evaluate(stored_recording(name), name).explained
+    evaluation = evaluate(stored_recording(name), name)
     note = (
         "a recording that comes with this package: with MuJoCo the demo simulates the robots: "
         f"{how_to_install('mujoco')}"

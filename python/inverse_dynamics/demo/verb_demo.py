@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.terminal.screen import Line
 
-GROUP = "look"
+PLACE = ("look", 1)
 SUMMARY = "simulate and evaluate four robots, show them on one page"
 DESCRIPTION = (
     "Simulate a UR10 and a Panda, compute the torques of their motion and, with recordings, of the "

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Explains an evaluation: likely causes of its errors, for whoever shows them.
 
-for cause in diagnose(evaluate("recording", "ur10_real")).diagnosis:
+for cause in diagnose(evaluate_run(open_run("recording", "ur10_real"))).diagnosis:
     print(cause.text)
 """
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,25 +18,24 @@ import numpy as np
 from inverse_dynamics import _core
 from inverse_dynamics._core import Accelerations, Effort, JointError, joint_errors
 from inverse_dynamics.arguments import checked
+from inverse_dynamics.evaluation.accelerations import Samples
 from inverse_dynamics.evaluation.bands import read_band
 from inverse_dynamics.evaluation.run import Run, RunOptions, open_run
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.views import Views
 from inverse_dynamics.progress import no_progress
+from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.robots import Robot
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from typing_extensions import Unpack
 
     from inverse_dynamics.arrays import DataFrame, Floats
     from inverse_dynamics.diagnosis.compare import Cause
-    from inverse_dynamics.evaluation.accelerations import Samples
     from inverse_dynamics.progress import Progress
-    from inverse_dynamics.recordings.joint_log import JointLog
-    from inverse_dynamics.robots.robots import Robot
 
 __all__ = [
     "Evaluation",
@@ -133,7 +133,9 @@ def evaluate(
     scratch: Path | str = "",
     **options: Unpack[RunOptions],
 ) -> Evaluation:
-    """Compute the torques of a recorded motion and compare them with the measured ones.
+    """Compute the torques of a recorded motion, compare them with the measured ones, explain the errors.
+
+    evaluate_run(open_run(...)) leaves the explanation out.
 
     Parameters
     ----------
@@ -165,7 +167,8 @@ def evaluate(
     >>> result.mean_rmse < 0.5  # N m
     True
     """
-    return evaluate_run(open_run(bag, robot, progress=progress, scratch=scratch, **options))
+    run = open_run(bag, robot, progress=progress, scratch=scratch, **options)
+    return evaluate_run(run).explained
 
 
 def evaluate_run(run: Run) -> Evaluation:

@@ -116,7 +116,7 @@ def evaluate_into(
     with written_whole(
         Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
     ) as target:
-        evaluation = evaluate(bag, robot, progress=progress, scratch=target, **options).explained
+        evaluation = evaluate(bag, robot, progress=progress, scratch=target, **options)
         _write(evaluation, target, storage, figures, progress)
         if parquet is not None:
             from inverse_dynamics.evaluation.exports import export_series

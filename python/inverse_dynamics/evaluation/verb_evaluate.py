@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.robots.robots import Robot
     from inverse_dynamics.terminal.screen import Line
 
-GROUP = "look"
+PLACE = ("look", 4)
 SUMMARY = "compare computed with measured torques of a recording"
 DESCRIPTION = "Compute the torques of a recorded motion and compare them with the measured ones."
 EPILOG = """\

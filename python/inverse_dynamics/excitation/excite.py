@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.errors import EvaluationError
-from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run
 from inverse_dynamics.evaluation.turns import on_one_turn
 from inverse_dynamics.excitation.excitation import (
     Excitation,
@@ -280,7 +280,7 @@ def message_text(
 
 def _read(recording: Path | str, robot: Robot, progress: Progress) -> Evaluation:
     """Valid samples of a recording. Raises UserError."""
-    found = evaluate(recording, robot, progress=progress)
+    found = evaluate_run(open_run(recording, robot, progress=progress))
     if not found.samples.kept.any():
         raise EvaluationError(f"{recording}: expected samples of a motion, got no valid one")
     return found

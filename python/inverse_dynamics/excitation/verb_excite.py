@@ -12,7 +12,7 @@ from inverse_dynamics.terminal.values import positive_number, share, whole_numbe
 if TYPE_CHECKING:
     import argparse
 
-GROUP = "identify"
+PLACE = ("identify", 1)
 SUMMARY = "find the motion to record for identification"
 DESCRIPTION = (
     "Find the motion after which the torques of a robot can be predicted best: within the "

@@ -11,7 +11,7 @@ from inverse_dynamics.terminal.options import Options
 if TYPE_CHECKING:
     import argparse
 
-GROUP = "share"
+PLACE = ("share", 2)
 SUMMARY = "write all series of evaluations as tables: CSV, Parquet"
 EPILOG = """\
 examples:

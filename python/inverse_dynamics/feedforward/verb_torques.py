@@ -12,7 +12,7 @@ from inverse_dynamics.wording import counted
 if TYPE_CHECKING:
     import argparse
 
-GROUP = "plan"
+PLACE = ("plan", 2)
 SUMMARY = "fill in the efforts of a planned trajectory"
 DESCRIPTION = "Fill in the efforts of a planned trajectory, and check them against the limits."
 EPILOG = """\

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics._core import ArmFitOptions
-from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run
 from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.identification.blocks import blocks_of
 from inverse_dynamics.identification.knowledge import Knowledge, student_t
@@ -143,7 +143,7 @@ def _read(
     if load is not None:
         _check_load(path, load)
     described = with_changes(replace(described, parameters=dict(load or {})))
-    found = evaluate(path, described, progress=progress, **options)
+    found = evaluate_run(open_run(path, described, progress=progress, **options))
     if found.effort.meaning != "current":
         raise IdentificationError(
             f"{path}: expected motor currents, whose gains a known load determines, got "

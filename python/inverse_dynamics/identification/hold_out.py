@@ -95,5 +95,5 @@ def hold_out(
         recording=recording,
         rmse=root_mean_squares([errors]),
         coverage=np.asarray(result.coverage),
-        notes=result.explained.notes,
+        notes=result.notes,
     )

@@ -12,7 +12,7 @@ import numpy as np
 
 from inverse_dynamics import _core
 from inverse_dynamics.arguments import checked
-from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
+from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run, torques_with_gravity
 from inverse_dynamics.evaluation.posture import locked_joints, posture_of
 from inverse_dynamics.evaluation.run import RunOptions, of_recording, overridden
 from inverse_dynamics.evaluation.turns import on_one_turn
@@ -167,7 +167,7 @@ def identify(
         robot = replace(robot, drive_gains=tuple(gain.value for gain in gains))
     check_gains(robot, stated.get("effort_is"))
     evaluations = on_one_turn(
-        [evaluate(path, robot, progress=progress, **stated) for path in recordings]
+        [evaluate_run(open_run(path, robot, progress=progress, **stated)) for path in recordings]
     )
     robot = evaluations[0].robot
     check_recordings(evaluations, accept)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics import _core
-from inverse_dynamics.contact.contacts import LEAST_GAIN
+from inverse_dynamics.contacts.contacts import LEAST_GAIN
 from inverse_dynamics.evaluation.bands import LEVEL, SHARE, TorqueBand
 from inverse_dynamics.identification.blocks import together
 from inverse_dynamics.identification.cross_validation import errors_of

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.robots.robots import Robot
     from inverse_dynamics.terminal.screen import Line
 
-GROUP = "identify"
+PLACE = ("identify", 2)
 SUMMARY = "make a model with friction from recordings"
 DESCRIPTION = "Identify a model with friction from recordings of a robot, and state its errors."
 EPILOG = """\

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, is_dataclass
+import sys
+from dataclasses import asdict, fields, is_dataclass
 from pathlib import Path
-from types import NoneType, UnionType
+from types import NoneType, SimpleNamespace, UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -55,9 +56,11 @@ def read_back(kind: Any, value: Any, where: str) -> Any:
         if kind is not int or not isinstance(value, bool):
             return value
     elif isinstance(kind, type) and is_dataclass(kind) and isinstance(value, dict):
-        hints = get_type_hints(kind, localns=_ARRAYS)
-        there = {name: hint for name, hint in hints.items() if name in value}
-        return kind(**{k: read_back(hint, value[k], f"{where}.{k}") for k, hint in there.items()})
+        there = SimpleNamespace(
+            __annotations__={f.name: f.type for f in fields(kind) if f.name in value}
+        )
+        hints = get_type_hints(there, vars(sys.modules[kind.__module__]), _ARRAYS)
+        return kind(**{k: read_back(hint, value[k], f"{where}.{k}") for k, hint in hints.items()})
     elif origin in (Union, UnionType):  # X | None
         (other,) = (part for part in parts if part is not NoneType)
         return None if value is None else read_back(other, value, where)

@@ -19,7 +19,12 @@ import numpy as np
 
 from inverse_dynamics._core import PayloadEstimator, PayloadOptions, PayloadStatus, residual_noise
 from inverse_dynamics.errors import EvaluationError
-from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate, torques_with_gravity
+from inverse_dynamics.evaluation.evaluation import (
+    CAUSE,
+    Evaluation,
+    evaluate,
+    torques_with_gravity,
+)
 from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.identification.uncertainty import read_uncertainty
 from inverse_dynamics.progress import no_progress
@@ -192,7 +197,7 @@ def estimate_payload(
         empty=None if empty is None else without.bag,
         time=samples.time,
         notes=(
-            *evaluation.notes,
+            *(note for note in evaluation.notes if not note.startswith(CAUSE)),
             *told,
             *phantom,
             *_notes(found, evaluation, idle, solver),

@@ -19,7 +19,7 @@ from inverse_dynamics.terminal.values import file_name
 if TYPE_CHECKING:
     import argparse
 
-GROUP = "identify"
+PLACE = ("identify", 3)
 SUMMARY = "estimate what the robot carries in a recording"
 DESCRIPTION = "Estimate what the robot carries in a recording: mass, center of mass, inertia."
 EPILOG = """\

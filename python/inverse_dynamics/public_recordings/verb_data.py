@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.terminal.screen import Line
 
-GROUP = "look"
+PLACE = ("look", 2)
 SUMMARY = "fetch public recordings of a real UR10 and a real Panda"
 DESCRIPTION = "Fetch the public recordings of a real UR10 and a real Panda."
 EPILOG = """\

@@ -112,7 +112,7 @@ def read_joint_trajectories(
 def decode(raw: bytes, where: str, topic: str, received: int) -> JointTrajectory:
     """Decode a message. Raises BagError."""
     try:
-        message: Any = typestore().deserialize_cdr(raw, MESSAGE_TYPE)
+        message = _deserialized(raw)
     except Exception as error:  # whatever a decoder makes of a damaged message
         raise BagError(
             f"{where}: can't be decoded as {MESSAGE_TYPE} ({error_text(error)}): the recording is "
@@ -129,6 +129,20 @@ def decode(raw: bytes, where: str, topic: str, received: int) -> JointTrajectory
         time_from_start=np.array(times, dtype=np.int64),
         message=message,
     )
+
+
+def _deserialized(raw: bytes) -> Any:
+    """The message that bytes begin with.
+
+    Serializers append bytes of no meaning. ROS's own readers ignore what follows a message; rosbags'
+    deserialize_cdr allows three bytes.
+    """
+    if raw[:2] not in (b"\0\0", b"\0\1"):
+        raise ValueError("it doesn't begin with the encapsulation of plain CDR")
+    definition = typestore().get_msgdef(MESSAGE_TYPE)
+    read = definition.deserialize_cdr_le if raw[1] else definition.deserialize_cdr_be
+    message, _ = read(raw[4:], 0, definition.cls, typestore())
+    return message
 
 
 def joint_log_of(

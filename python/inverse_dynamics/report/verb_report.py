@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.show.page import ReportRun
 
-GROUP = "share"
+PLACE = ("share", 1)
 SUMMARY = "make one page of evaluations: motion and torques"
 DESCRIPTION = "Make one HTML page of evaluations: the robot in motion and its torques."
 EPILOG = """\

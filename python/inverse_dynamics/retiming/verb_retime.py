@@ -14,7 +14,7 @@ from inverse_dynamics.terminal.values import numbers, positive_number, share, wh
 if TYPE_CHECKING:
     import argparse
 
-GROUP = "plan"
+PLACE = ("plan", 3)
 SUMMARY = "time a path within torque limits"
 EPILOG = """\
 examples:

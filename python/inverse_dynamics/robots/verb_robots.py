@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.robots.arm import Arm
     from inverse_dynamics.robots.robots import Robot
 
-GROUP = "look"
+PLACE = ("look", 3)
 SUMMARY = "list robots, show one"
 DESCRIPTION = "List the run configurations of the sourced workspaces, or show one."
 EPILOG = """\
@@ -86,7 +86,7 @@ def _new(arguments: argparse.Namespace) -> Arm:
     """Write the file of a new robot; gives its arm. Raises UserError."""
     from dataclasses import replace
 
-    from inverse_dynamics.evaluation.evaluation import evaluate
+    from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run
     from inverse_dynamics.robots.arm import Arm
     from inverse_dynamics.robots.robot_files import write_robot
     from inverse_dynamics.robots.robots import robot_of_description, with_changes
@@ -100,7 +100,7 @@ def _new(arguments: argparse.Namespace) -> Arm:
     description = f"{arguments.urdf.name}, {len(arm.joint_names)} joints"
     robot = replace(robot, name=arguments.new.stem, description=description)
     if arguments.recording is not None:
-        evaluated = evaluate(arguments.recording, robot)
+        evaluated = evaluate_run(open_run(arguments.recording, robot))
         robot = replace(evaluated.robot, effort=evaluated.effort.meaning)
     write_robot(robot, arguments.new, overwrite=arguments.overwrite)
     return arm

@@ -22,11 +22,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.excitation.excitation import (
-    ExcitationOptions,
-    condition_of,
-    optimise_excitation,
-)
 from inverse_dynamics.installation.extras import lazily_imported
 from inverse_dynamics.outputs.files import Contents, move_up, write_text, written_whole
 from inverse_dynamics.progress import no_progress
@@ -162,7 +157,7 @@ def simulate(
         say(
             f"{why}searching for an exciting one, which takes about a minute; --trajectory names one"
         )
-        chosen, source = _searched(simulated, ExcitationOptions(table=table), seed, progress)
+        chosen, source = _searched(simulated, seed, progress, table=table)
     else:
         chosen, source = _begun_by_seed(*_given_trajectory(stated.trajectory, chain), seed)
     checker = ContactChecker(simulated, table=table)
@@ -194,6 +189,8 @@ def simulate(
         "mujoco": mujoco.__version__,
         "robot_description_sha256": hashlib.sha256(description.encode()).hexdigest(),
     }
+    from inverse_dynamics.excitation.excitation import condition_of  # which imports this feature
+
     return SimulatedRun(
         log=_joint_log(robot, chain, recorded),
         motion=motion,
@@ -239,10 +236,12 @@ def _given_trajectory(given: Path | Trajectory, chain: UrdfChain) -> tuple[Traje
 
 
 def _searched(
-    robot: SimulatedRobot, options: ExcitationOptions, seed: int, progress: Progress
+    robot: SimulatedRobot, seed: int, progress: Progress, *, table: bool
 ) -> tuple[Trajectory, str]:
     """A new exciting trajectory, and where it comes from."""
-    found = optimise_excitation(robot, options, seed=seed, progress=progress)
+    from inverse_dynamics.excitation.excitation import ExcitationOptions, optimise_excitation
+
+    found = optimise_excitation(robot, ExcitationOptions(table=table), seed=seed, progress=progress)
     return found.trajectory, (
         f"Exciting trajectory for {robot.chain.name}, optimised with seed {seed}: condition number of "
         f"the base regressor {found.condition_number:.4g}."

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.simulation import Payload, Resolution, SimulatedRun
     from inverse_dynamics.terminal.screen import Line
 
-GROUP = "plan"
+PLACE = ("plan", 1)
 SUMMARY = "record a simulated robot on an exciting trajectory"
 DESCRIPTION = (
     "Simulate a robot (MuJoCo) under a joint trajectory controller that commands efforts, "

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.terminal.options import Options
 
-GROUP = "share"
+PLACE = ("share", 3)
 SUMMARY = "print the script that completes `ids` commands"
 DESCRIPTION = "Print the script that completes `ids` commands in bash, zsh or fish."
 EPILOG = """\

@@ -4,6 +4,9 @@
 #include <chain_dynamics/text.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
+#include <rcl_interfaces/msg/parameter_descriptor.hpp>
+#include <rclcpp/exceptions.hpp>
+#include <rclcpp/parameter.hpp>
 #include <utility>
 
 #include "changing_damping.hpp"

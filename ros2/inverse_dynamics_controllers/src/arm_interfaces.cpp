@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arm_interfaces.hpp"
 
+#include <cstddef>
 #include <hardware_interface/types/hardware_interface_type_values.hpp>
 #include <initializer_list>
 #include <inverse_dynamics_solver/exceptions.hpp>

@@ -5,6 +5,9 @@
 
 #include <Eigen/Core>
 #include <controller_interface/controller_interface_base.hpp>
+#include <cstddef>
+#include <hardware_interface/loaned_command_interface.hpp>
+#include <hardware_interface/loaned_state_interface.hpp>
 #include <inverse_dynamics_control/signals.hpp>
 #include <string>
 #include <vector>

@@ -2,6 +2,7 @@
 #include "changing_damping.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_control/damping.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>

@@ -11,6 +11,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <exception>
 #include <inverse_dynamics_control/control_law.hpp>
 #include <inverse_dynamics_control/fault_latch.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>

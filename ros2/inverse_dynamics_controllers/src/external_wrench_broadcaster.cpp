@@ -3,6 +3,8 @@
 
 #include <inverse_dynamics_controllers/external_wrench_broadcaster_parameters.hpp>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "arm.hpp"
 #include "control_loop.hpp"

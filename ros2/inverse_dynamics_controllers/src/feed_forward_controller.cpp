@@ -3,6 +3,9 @@
 
 #include <inverse_dynamics_control/feed_forward.hpp>
 #include <inverse_dynamics_controllers/feed_forward_controller_parameters.hpp>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "follower.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "follower.hpp"
 
+#include <string>
+
 namespace inverse_dynamics_controllers {
 
 using inverse_dynamics_control::jointNumbers;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
 
+#include <cstddef>
 #include <inverse_dynamics_control/computed_torque.hpp>
 #include <inverse_dynamics_controllers/inverse_dynamics_controller_parameters.hpp>
+#include <memory>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "follower.hpp"
 

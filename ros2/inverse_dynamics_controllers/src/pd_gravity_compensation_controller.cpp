@@ -3,6 +3,7 @@
 
 #include <inverse_dynamics_control/pd_gravity_compensation.hpp>
 #include <inverse_dynamics_controllers/pd_gravity_compensation_controller_parameters.hpp>
+#include <memory>
 
 #include "follower.hpp"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
 
 namespace inverse_dynamics_controllers {

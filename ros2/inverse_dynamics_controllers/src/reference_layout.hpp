@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <inverse_dynamics_control/signals.hpp>
 #include <string>
 #include <vector>

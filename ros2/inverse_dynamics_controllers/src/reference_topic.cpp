@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
+#include <cstddef>
+#include <trajectory_msgs/msg/joint_trajectory_point.hpp>
 
 #include "latest_value.hpp"
 

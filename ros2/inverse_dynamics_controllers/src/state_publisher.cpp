@@ -2,6 +2,7 @@
 #include "state_publisher.hpp"
 
 #include <control_msgs/msg/joint_trajectory_controller_state.hpp>
+#include <cstdint>
 #include <rclcpp/create_timer.hpp>
 #include <utility>
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
+#include <cstddef>
 
 namespace inverse_dynamics_controllers {
 

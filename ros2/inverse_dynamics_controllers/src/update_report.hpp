@@ -10,6 +10,7 @@
 #include <inverse_dynamics_control/reference_guard.hpp>
 #include <inverse_dynamics_control/status.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "report_log.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrench_publisher.hpp"
 
+#include <cstdint>
+#include <geometry_msgs/msg/wrench.hpp>
 #include <geometry_msgs/msg/wrench_stamped.hpp>
 #include <rclcpp/create_timer.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrench_report.hpp"
 
+#include <cstddef>
 #include <string>
 
 namespace inverse_dynamics_controllers {

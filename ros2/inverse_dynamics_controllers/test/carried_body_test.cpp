@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "carried_body.hpp"
 
+#include <algorithm>
+
 #include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
 #include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
 

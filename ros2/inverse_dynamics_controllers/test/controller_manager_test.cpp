@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <control_msgs/msg/joint_trajectory_controller_state.hpp>
 #include <controller_manager/controller_manager.hpp>

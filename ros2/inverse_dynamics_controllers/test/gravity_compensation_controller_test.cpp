@@ -3,6 +3,9 @@
 
 #include <rclcpp/version.h>
 
+#include <algorithm>
+#include <chrono>
+
 #include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
 
 namespace inverse_dynamics_controllers {

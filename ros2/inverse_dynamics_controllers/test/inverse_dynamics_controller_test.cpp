@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
 
+#include <chrono>
+#include <cmath>
 #include <control_msgs/msg/joint_trajectory_controller_state.hpp>
 
 #include "inverse_dynamics_controllers/testing/controller_fixture.hpp"

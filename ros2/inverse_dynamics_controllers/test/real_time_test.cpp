@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
 #include <inverse_dynamics_solver/conformance/real_time_section.hpp>
 #include <new>

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "evaluation.hpp"
 

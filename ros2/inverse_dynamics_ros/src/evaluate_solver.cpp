@@ -8,10 +8,13 @@
 ///
 /// Exit code 0: done; 2: something the user can repair (the last line says what); 130: interrupted.
 
+#include <cstddef>
 #include <cstdio>
 #include <inverse_dynamics_ros/evaluate_solver_parameters.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <rclcpp/rclcpp.hpp>
+#include <string>
+#include <vector>
 
 #include "interrupted.hpp"
 #include "node_solver.hpp"

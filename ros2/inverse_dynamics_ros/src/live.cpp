@@ -5,6 +5,9 @@
 ///
 ///     ros2 run inverse_dynamics_ros live --ros-args -p plugin_name:=package/Class
 
+#include <memory>
+#include <rclcpp/rclcpp.hpp>
+
 #include "inverse_dynamics_ros/live_node.hpp"
 #include "run_program.hpp"
 

@@ -3,6 +3,7 @@
 #include "live_contact.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace inverse_dynamics_ros {

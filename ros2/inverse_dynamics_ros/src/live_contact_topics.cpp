@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
+#include <geometry_msgs/msg/vector3.hpp>
 #include <inverse_dynamics_control/joint_parameters.hpp>
 #include <optional>
 #include <sstream>

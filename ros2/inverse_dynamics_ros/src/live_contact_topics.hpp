@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <diagnostic_updater/diagnostic_updater.hpp>
 #include <geometry_msgs/msg/wrench_stamped.hpp>
 #include <inverse_dynamics_ros/live_node_parameters.hpp>
@@ -13,6 +14,7 @@
 #include <rclcpp/rclcpp.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
 #include <std_msgs/msg/bool.hpp>
+#include <std_msgs/msg/header.hpp>
 #include <string>
 #include <vector>
 

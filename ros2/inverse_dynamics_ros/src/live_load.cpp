@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <chrono>
+#include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
+#include <exception>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>
 #include <utility>

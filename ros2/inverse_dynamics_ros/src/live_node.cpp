@@ -2,12 +2,18 @@
 
 #include "inverse_dynamics_ros/live_node.hpp"
 
+#include <chrono>
+#include <cstdint>
+#include <exception>
 #include <inverse_dynamics_ros/live_node_parameters.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
 #include <std_msgs/msg/string.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "live_contact_topics.hpp"
 #include "live_diagnostics.hpp"

@@ -2,6 +2,8 @@
 
 #include "live_payload.hpp"
 
+#include <cstddef>
+
 namespace inverse_dynamics_ros {
 namespace {
 

@@ -2,6 +2,7 @@
 
 #include "live_torques.hpp"
 
+#include <cstddef>
 #include <limits>
 #include <utility>
 

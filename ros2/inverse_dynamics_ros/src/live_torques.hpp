@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <inverse_dynamics_evaluation/effort.hpp>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>

@@ -10,10 +10,13 @@
 #include <algorithm>
 #include <class_loader/class_loader.hpp>
 #include <cmath>
+#include <exception>
 #include <inverse_dynamics_ros/robot_parameters.hpp>
 #include <memory>
 #include <moveit/planning_interface/planning_response_adapter.hpp>
 #include <moveit/robot_trajectory/robot_trajectory.hpp>
+#include <rclcpp/logging.hpp>
+#include <rclcpp/node.hpp>
 #include <string>
 
 #include "node_solver.hpp"

@@ -3,6 +3,9 @@
 #include "node_solver.hpp"
 
 #include <inverse_dynamics_ros/robot_parameters.hpp>
+#include <rcl_interfaces/msg/parameter_descriptor.hpp>
+#include <rclcpp/parameter.hpp>
+#include <string>
 
 namespace inverse_dynamics_ros {
 

@@ -7,6 +7,7 @@
 
 #include <inverse_dynamics_solver/parameters.hpp>
 #include <rclcpp/node.hpp>
+#include <string>
 
 #include "robot_parameters.hpp"
 

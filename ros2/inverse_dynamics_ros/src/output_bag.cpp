@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <exception>
 #include <rosbag2_storage/storage_options.hpp>
 
 #include "user_error.hpp"

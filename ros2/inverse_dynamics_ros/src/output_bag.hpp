@@ -5,8 +5,10 @@
 
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <rclcpp/time.hpp>
 #include <rosbag2_cpp/writer.hpp>
 #include <string>
 

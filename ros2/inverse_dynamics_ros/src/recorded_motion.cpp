@@ -3,9 +3,14 @@
 #include "recorded_motion.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <rclcpp/serialization.hpp>
 #include <rclcpp/serialized_message.hpp>
+#include <trajectory_msgs/msg/joint_trajectory_point.hpp>
+#include <utility>
 
 #include "interrupted.hpp"
 #include "user_error.hpp"

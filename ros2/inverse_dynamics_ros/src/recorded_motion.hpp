@@ -9,6 +9,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <inverse_dynamics_evaluation/recording.hpp>
 #include <memory>
 #include <string>

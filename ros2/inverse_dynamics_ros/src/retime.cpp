@@ -5,6 +5,9 @@
 ///
 ///     ros2 run inverse_dynamics_ros retime --ros-args -p plugin_name:=package/Class
 
+#include <memory>
+#include <rclcpp/rclcpp.hpp>
+
 #include "retime_node.hpp"
 #include "run_program.hpp"
 

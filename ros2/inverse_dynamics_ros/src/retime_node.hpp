@@ -6,6 +6,7 @@
 
 #pragma once
 
+#include <exception>
 #include <inverse_dynamics_msgs/srv/retime.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <memory>

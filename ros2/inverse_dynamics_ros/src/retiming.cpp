@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_control/joint_parameters.hpp>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
 #include <rclcpp/duration.hpp>

@@ -3,6 +3,7 @@
 #include "robot_parameters.hpp"
 
 #include <chain_dynamics/robot_description.hpp>
+#include <cstddef>
 #include <fstream>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>

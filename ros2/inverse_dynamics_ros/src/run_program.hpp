@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <exception>
 #include <rclcpp/rclcpp.hpp>
 
 #include "interrupted.hpp"

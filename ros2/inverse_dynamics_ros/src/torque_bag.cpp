@@ -2,7 +2,10 @@
 
 #include "torque_bag.hpp"
 
+#include <cstddef>
 #include <inverse_dynamics_evaluation/joint_state_writer.hpp>
+#include <trajectory_msgs/msg/joint_trajectory_point.hpp>
+#include <vector>
 
 #include "interrupted.hpp"
 #include "output_bag.hpp"

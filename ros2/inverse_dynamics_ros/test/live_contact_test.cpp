@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <inverse_dynamics_control/momentum_observer.hpp>
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
 #include <limits>
 

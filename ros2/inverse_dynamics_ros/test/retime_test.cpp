@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
 #include <string>

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <optional>
 
 namespace inverse_dynamics_ros {
 namespace {

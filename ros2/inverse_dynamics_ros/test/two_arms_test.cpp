@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <rclcpp/version.h>
 
+#include <chrono>
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
 #include <cmath>
+#include <cstddef>
+#include <exception>
 #include <hardware_interface/types/hardware_interface_type_values.hpp>
 #include <pluginlib/class_list_macros.hpp>
 #include <rclcpp/logging.hpp>

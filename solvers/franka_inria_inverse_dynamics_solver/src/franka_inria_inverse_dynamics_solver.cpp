@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "franka_inria_inverse_dynamics_solver/franka_inria_inverse_dynamics_solver.hpp"
 
+#include <inverse_dynamics_solver/configuration.hpp>
+
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
 namespace franka_inria_inverse_dynamics_solver {

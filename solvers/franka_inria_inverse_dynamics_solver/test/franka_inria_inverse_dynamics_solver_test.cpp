@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "franka_inria_inverse_dynamics_solver/franka_inria_inverse_dynamics_solver.hpp"
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
+#include <string>
+#include <vector>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/motor_currents.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 

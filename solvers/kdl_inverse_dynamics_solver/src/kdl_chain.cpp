@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kdl_chain.hpp"
 
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/spatial.hpp>
+#include <cstddef>
+#include <kdl/frames.hpp>
 #include <kdl/joint.hpp>
+#include <kdl/rigidbodyinertia.hpp>
 #include <kdl/segment.hpp>
 
 namespace kdl_inverse_dynamics_solver {

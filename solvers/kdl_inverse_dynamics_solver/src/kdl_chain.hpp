@@ -4,8 +4,10 @@
 #pragma once
 
 #include <kdl/chain.hpp>
+#include <kdl/frames.hpp>
 
 #include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/spatial.hpp"
 
 namespace kdl_inverse_dynamics_solver {
 inline namespace v2 {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kdl_inverse_dynamics_solver/kdl_inverse_dynamics_solver.hpp"
 
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/spatial.hpp>
+#include <memory>
+
 #include "kdl_chain.hpp"
 #include "kdl_workspace.hpp"
 

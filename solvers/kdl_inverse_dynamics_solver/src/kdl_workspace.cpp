@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kdl_workspace.hpp"
 
+#include <kdl/chain.hpp>
+#include <kdl/frames.hpp>
+#include <kdl/joint.hpp>
+#include <kdl/solveri.hpp>
 #include <string>
 
+#include "chain_dynamics/spatial.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace kdl_inverse_dynamics_solver {

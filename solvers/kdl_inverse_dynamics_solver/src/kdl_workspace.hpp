@@ -7,6 +7,7 @@
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainfdsolver_recursive_newton_euler.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
+#include <kdl/chainidsolver.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/chainjnttojacdotsolver.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
@@ -18,6 +19,7 @@
 
 #include "chain_dynamics/spatial.hpp"
 #include "inverse_dynamics_solver/external_wrench.hpp"
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 
 namespace kdl_inverse_dynamics_solver {

@@ -4,11 +4,21 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstdlib>
+#include <kdl/chain.hpp>
+#include <kdl/frames.hpp>
+#include <kdl/joint.hpp>
+#include <kdl/rigidbodyinertia.hpp>
+#include <kdl/rotationalinertia.hpp>
 #include <kdl/tree.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/robot_description.hpp"
+#include "chain_dynamics/spatial.hpp"
 #include "chain_dynamics/urdf.hpp"
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "kdl_chain.hpp"

@@ -4,13 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/coriolis_vector.hpp>
 #include <chain_dynamics/gravity_vector.hpp>
 #include <chain_dynamics/inertia_matrix.hpp>
 #include <chain_dynamics/torques.hpp>
 #include <cmath>
+#include <inverse_dynamics_solver/configuration.hpp>
+#include <inverse_dynamics_solver/parameters.hpp>
 #include <random>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 

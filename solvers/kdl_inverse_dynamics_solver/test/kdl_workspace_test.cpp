@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chain_dynamics/chain.hpp>
 #include <cmath>
 
 #include "kdl_chain.hpp"

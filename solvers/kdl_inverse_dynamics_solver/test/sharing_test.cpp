@@ -10,8 +10,16 @@
 #include <atomic>
 #include <cstdlib>
 #include <functional>
+#include <kdl/chain.hpp>
+#include <kdl/chaindynparam.hpp>
+#include <kdl/chainidsolver_recursive_newton_euler.hpp>
+#include <kdl/frames.hpp>
+#include <kdl/jntarray.hpp>
+#include <string>
 #include <thread>
 
+#include "chain_dynamics/chain.hpp"
+#include "inverse_dynamics_solver/configuration.hpp"
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "kdl_chain.hpp"
 #include "kdl_workspace.hpp"

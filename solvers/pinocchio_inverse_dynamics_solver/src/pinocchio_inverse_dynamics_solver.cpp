@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pinocchio_inverse_dynamics_solver/pinocchio_inverse_dynamics_solver.hpp"
 
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/spatial.hpp>
+#include <memory>
+
 #include "pinocchio_model.hpp"
 #include "pinocchio_workspace.hpp"
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pinocchio_model.hpp"
 
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/spatial.hpp>
+#include <cstddef>
+
 namespace pinocchio_inverse_dynamics_solver {
 inline namespace v2 {
 namespace {

@@ -2,6 +2,7 @@
 
 // The tip's kinematics by Pinocchio.
 
+#include <chain_dynamics/spatial.hpp>
 #include <pinocchio/algorithm/frames.hpp>
 #include <pinocchio/algorithm/jacobian.hpp>
 #include <pinocchio/algorithm/kinematics.hpp>

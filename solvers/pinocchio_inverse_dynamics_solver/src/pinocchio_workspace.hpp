@@ -7,6 +7,7 @@
 
 #include "chain_dynamics/spatial.hpp"
 #include "inverse_dynamics_solver/external_wrench.hpp"
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 #include "pinocchio_headers.hpp"
 

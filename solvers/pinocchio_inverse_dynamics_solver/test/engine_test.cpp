@@ -3,13 +3,19 @@
 /// Pinocchio as the judge of the engine: what no solver offers, and chains that no file describes.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
 #include <chain_dynamics/inertia_matrix.hpp>
+#include <chain_dynamics/model.hpp>
 #include <chain_dynamics/regressor.hpp>
 #include <chain_dynamics/torque_derivatives.hpp>
 #include <chain_dynamics/torques.hpp>
+#include <cstdlib>
 #include <memory>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "pinocchio_model.hpp"
 #include "pinocchio_workspace.hpp"

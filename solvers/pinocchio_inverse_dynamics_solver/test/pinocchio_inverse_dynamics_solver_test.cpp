@@ -7,6 +7,7 @@
 #include <string>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
+#include "inverse_dynamics_solver/parameters.hpp"
 
 namespace pinocchio_inverse_dynamics_solver::pinocchio_inverse_dynamics_solver_test {
 

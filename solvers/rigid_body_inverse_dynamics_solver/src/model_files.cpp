@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "chain_dynamics/error.hpp"
+#include "chain_dynamics/model.hpp"
 #include "chain_dynamics/model_file.hpp"
+#include "chain_dynamics/text.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/installed_package.hpp"
 

@@ -4,6 +4,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/model.hpp>
+#include <chain_dynamics/spatial.hpp>
+#include <cstddef>
 #include <vector>
 
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"

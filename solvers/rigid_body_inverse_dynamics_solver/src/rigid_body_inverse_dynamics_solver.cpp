@@ -3,15 +3,26 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstddef>
+#include <exception>
 #include <iomanip>
+#include <ios>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/fast_model.hpp"
+#include "chain_dynamics/model.hpp"
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
 #include "chain_dynamics/tip_kinematics.hpp"
+#include "inverse_dynamics_solver/configuration.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
+#include "inverse_dynamics_solver/parameters.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
 namespace rigid_body_inverse_dynamics_solver::reference_test {

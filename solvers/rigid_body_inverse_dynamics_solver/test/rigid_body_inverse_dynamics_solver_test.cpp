@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
+#include <gtest/gtest.h>
+
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
+#include "inverse_dynamics_solver/external_wrench.hpp"
+#include "inverse_dynamics_solver/parameters.hpp"
+#include "inverse_dynamics_solver/payload.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "chain_dynamics/model.hpp"
+#include "inverse_dynamics_solver/configuration.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 

@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ur10_inverse_dynamics_solver/ur10_inverse_dynamics_solver.hpp"
 
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
+#include "inverse_dynamics_solver/installed_package.hpp"
+#include "inverse_dynamics_solver/motor_currents.hpp"
+#include "inverse_dynamics_solver/parameters.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 
 namespace ur10_inverse_dynamics_solver::ur10_inverse_dynamics_solver_test {

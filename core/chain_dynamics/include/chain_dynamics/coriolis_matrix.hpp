@@ -17,6 +17,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
 
 #include "chain_dynamics/coriolis_vector.hpp"
 #include "chain_dynamics/dual.hpp"

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
 
 #include "chain_dynamics/kinematics.hpp"
 #include "chain_dynamics/torques.hpp"

@@ -78,8 +78,8 @@ struct Dual {
       : value(value_in), derivative(derivative_in) {}
 
   /// A constant: its derivatives are zero. Implicit, so that `2 * x` is what it says.
-  template <typename Number, typename = std::enable_if_t<std::is_arithmetic<Number>::value ||
-                                                         std::is_same<Number, T>::value>>
+  template <typename Number,
+            typename = std::enable_if_t<std::is_arithmetic_v<Number> || std::is_same_v<Number, T>>>
   Dual(const Number& constant)  // NOLINT(google-explicit-constructor)
       : value(constant), derivative(Derivative::Zero()) {}
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
 
 #include "chain_dynamics/gravity_vector.hpp"
 #include "chain_dynamics/inertia_matrix.hpp"

@@ -11,6 +11,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
+#include <vector>
 
 #include "chain_dynamics/kinematics.hpp"
 

@@ -9,6 +9,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
+#include <vector>
 
 #include "chain_dynamics/kinematics.hpp"
 #include "chain_dynamics/parameter_sets.hpp"

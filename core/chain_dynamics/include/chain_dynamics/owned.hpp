@@ -65,6 +65,7 @@ class Owned : public Eigen::Map<Plain> {
   Owned(Owned&& other) noexcept : Owned() { exchange(other); }
   ~Owned() = default;
 
+  // NOLINTNEXTLINE(bugprone-unhandled-self-assignment): the assignment of an expression handles it
   Owned& operator=(const Owned& other) {
     return *this = static_cast<const Eigen::EigenBase<View>&>(other);
   }

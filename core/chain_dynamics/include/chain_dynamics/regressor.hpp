@@ -13,6 +13,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
 
 #include "chain_dynamics/kinematics.hpp"
 

@@ -23,6 +23,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cassert>
 
 #include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/kinematics.hpp"

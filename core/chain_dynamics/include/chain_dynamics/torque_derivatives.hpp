@@ -12,6 +12,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
 
 #include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/inertia_matrix.hpp"

@@ -9,6 +9,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
+#include <vector>
 
 #include "chain_dynamics/gravity_vector.hpp"
 #include "chain_dynamics/kinematics.hpp"

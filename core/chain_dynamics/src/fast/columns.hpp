@@ -7,6 +7,9 @@
 
 #pragma once
 
+#include <cstddef>
+#include <utility>
+
 #include "structure.hpp"
 
 namespace chain_dynamics {

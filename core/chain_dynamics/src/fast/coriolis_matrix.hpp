@@ -8,6 +8,8 @@
 
 #pragma once
 
+#include <cstddef>
+
 #include "torque_derivatives.hpp"
 
 namespace chain_dynamics {

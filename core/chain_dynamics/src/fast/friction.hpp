@@ -11,6 +11,9 @@
 
 #pragma once
 
+#include <cstddef>
+#include <utility>
+
 #include "recursions.hpp"
 #include "turns.hpp"
 

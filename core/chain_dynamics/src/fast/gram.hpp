@@ -9,6 +9,8 @@
 
 #pragma once
 
+#include <cstddef>
+
 #include "many_states.hpp"
 #include "regressor.hpp"
 

@@ -7,6 +7,8 @@
 
 #pragma once
 
+#include <cstddef>
+
 #include "columns.hpp"
 #include "robot.hpp"
 #include "structure.hpp"

@@ -7,6 +7,8 @@
 
 #pragma once
 
+#include <cstddef>
+
 #include "pack.hpp"
 
 namespace chain_dynamics {

@@ -9,6 +9,8 @@
 
 #pragma once
 
+#include <cstddef>
+
 #include "linear_solve.hpp"
 #include "many_states.hpp"
 #include "regressor.hpp"

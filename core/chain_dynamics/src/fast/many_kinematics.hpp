@@ -7,6 +7,8 @@
 
 #pragma once
 
+#include <cstddef>
+
 #include "many_states.hpp"
 
 namespace chain_dynamics {

@@ -10,6 +10,8 @@
 
 #pragma once
 
+#include <cstddef>
+
 #include "friction.hpp"
 #include "lanes.hpp"
 

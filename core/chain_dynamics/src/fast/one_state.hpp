@@ -7,6 +7,8 @@
 
 #pragma once
 
+#include <cstddef>
+
 #include "friction.hpp"
 #include "linear_solve.hpp"
 #include "regressor.hpp"

@@ -7,6 +7,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <type_traits>
 
 #include "coriolis_matrix.hpp"

@@ -8,6 +8,8 @@
 
 #pragma once
 
+#include <cstddef>
+
 #include "link_motion.hpp"
 
 namespace chain_dynamics {

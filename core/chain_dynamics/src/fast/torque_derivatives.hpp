@@ -24,6 +24,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <type_traits>
 
 #include "gravity_vector.hpp"

@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "chain_dynamics/model.hpp"
+#include "chain_dynamics/spatial.hpp"
 #include "inverse_dynamics_solver/payload.hpp"
 #include "inverse_dynamics_solver/published.hpp"
 #include "inverse_dynamics_solver/variable_gravity.hpp"

@@ -22,6 +22,7 @@
 
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/friction.hpp"
+#include "chain_dynamics/friction_laws/viscous_coulomb_offset.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
 
 namespace inverse_dynamics_solver {

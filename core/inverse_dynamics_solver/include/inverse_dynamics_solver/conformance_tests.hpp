@@ -28,7 +28,9 @@
 /// The tests are a library, compiled with the interface.
 #pragma once
 
-#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
+#include <gtest/gtest.h>
+
+#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"  // IWYU pragma: export
 
 /// Runs all tests for the solver that `traits` describes, under the name `prefix`.
 #define INVERSE_DYNAMICS_SOLVER_CONFORMANCE(prefix, traits)                             \

@@ -18,7 +18,7 @@
 #include "inverse_dynamics_solver/configuration.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
-#include "inverse_dynamics_solver/states.hpp"
+#include "inverse_dynamics_solver/states.hpp"  // IWYU pragma: export
 
 namespace inverse_dynamics_solver {
 

@@ -8,6 +8,7 @@
 ///     solver->initialize(Parameters::fromYamlFile("robot.yaml"), "ids");       // YAML
 #pragma once
 
+#include <chain_dynamics/located_yaml.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <functional>

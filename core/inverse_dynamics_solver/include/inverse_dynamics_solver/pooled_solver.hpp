@@ -9,6 +9,10 @@
 ///     };
 #pragma once
 
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/friction_laws/coefficients.hpp>
+#include <chain_dynamics/model.hpp>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <vector>

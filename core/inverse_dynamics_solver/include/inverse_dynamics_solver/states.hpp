@@ -11,6 +11,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <type_traits>
 #include <utility>
 #include <vector>
 

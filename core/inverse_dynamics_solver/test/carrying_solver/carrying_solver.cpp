@@ -3,7 +3,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <pluginlib/class_list_macros.hpp>
+#include <string>
 #include <thread>
 #include <utility>
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <chain_dynamics/regressor.hpp>
+#include <chain_dynamics/spatial.hpp>
 #include <cmath>
 
 #include "two_link_arm.hpp"

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chain_dynamics/model.hpp>
 #include <cstdlib>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 #include "two_link_arm.hpp"

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "two_link_solver.hpp"
 
+#include <chain_dynamics/chain.hpp>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <pluginlib/class_list_macros.hpp>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "two_link_arm.hpp"
 

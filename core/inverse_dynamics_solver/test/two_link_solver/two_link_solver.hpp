@@ -6,6 +6,8 @@
 #pragma once
 
 #include <atomic>
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/spatial.hpp>
 #include <memory>
 #include <string>
 

@@ -3,8 +3,10 @@
 // Lists the installed shapes, then loads those that are named, and tells where a package is.
 
 #include <ament_index.hpp>
+#include <exception>
 #include <iostream>
 #include <pluginlib/class_loader.hpp>
+#include <string>
 
 #include "shape.hpp"
 

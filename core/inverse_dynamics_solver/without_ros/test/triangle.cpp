@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pluginlib/class_list_macros.hpp>
+#include <string>
 
 #include "shape.hpp"
 

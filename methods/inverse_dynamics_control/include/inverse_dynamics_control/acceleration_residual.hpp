@@ -16,6 +16,7 @@
 /// the second order of the period.
 #pragma once
 
+#include <chain_dynamics/owned.hpp>
 #include <memory>
 
 #include "inverse_dynamics_control/external_torque_estimator.hpp"

@@ -7,6 +7,8 @@
 ///     if (sensing.detector()->contact()) stop.begin(reference.q, reference.qd);
 #pragma once
 
+#include <inverse_dynamics_solver/external_wrench.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
 #include <memory>
 #include <optional>
 

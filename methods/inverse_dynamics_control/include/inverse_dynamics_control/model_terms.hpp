@@ -6,6 +6,8 @@
 ///     model.torques(q, qd, a, tau);   // H(q) a + C(q, qd) qd + g(q), or what is left of it
 #pragma once
 
+#include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/owned.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <string>

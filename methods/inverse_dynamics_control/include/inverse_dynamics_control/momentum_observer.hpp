@@ -21,6 +21,7 @@
 /// could drift.
 #pragma once
 
+#include <chain_dynamics/owned.hpp>
 #include <memory>
 
 #include "inverse_dynamics_control/external_torque_estimator.hpp"

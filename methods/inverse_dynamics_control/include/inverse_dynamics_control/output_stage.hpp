@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chain_dynamics/owned.hpp>
 #include <string>
 #include <vector>
 

@@ -7,6 +7,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <string>
 #include <system_error>
 
 namespace inverse_dynamics_evaluation {

@@ -3,11 +3,22 @@
 #include "inverse_dynamics_evaluation/joint_state_writer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chain_dynamics/text.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
 #include <filesystem>
+#include <functional>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <limits>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "bytes.hpp"
 #include "joint_state_encoder.hpp"

@@ -9,10 +9,15 @@
 /// megabyte, as if these were chunks.
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <set>
+#include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "bytes.hpp"
 #include "crc32.hpp"

@@ -4,7 +4,13 @@
 /// MCAP files [https://mcap.dev/spec] with chunks, indexes and a summary, as rosbag2 writes them.
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bytes.hpp"
 #include "crc32.hpp"

@@ -3,9 +3,15 @@
 #include "merged_joint_states.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "../figures.hpp"
 #include "../pi.hpp"

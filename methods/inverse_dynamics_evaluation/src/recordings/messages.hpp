@@ -4,6 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <chain_dynamics/text.hpp>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>

@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <string>
 
 #include "bytes.hpp"
 #include "storage_writer.hpp"

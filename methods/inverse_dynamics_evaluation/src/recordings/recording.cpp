@@ -4,13 +4,19 @@
 
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <inverse_dynamics_evaluation/error.hpp>
+#include <ios>
 #include <map>
+#include <memory>
 #include <optional>
+#include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "joint_state_decoder.hpp"
 #include "merged_joint_states.hpp"
@@ -225,7 +231,7 @@ std::string Recording::topicOfType(const std::string& type, const std::string& t
     throw RecordingError(where + ": is an empty recording: it has no topic; record it again");
   }
   if (topic.empty()) {
-    if (!filled.empty()) candidates = filled;
+    if (!filled.empty()) candidates = std::move(filled);
     if (candidates.size() == 1) return candidates.front();
     throw RecordingError(where + ": expected one topic of type " + type + ", got " +
                          std::to_string(candidates.size()) +

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <chain_dynamics/text.hpp>
+#include <exception>
 #include <memory>
 #include <new>
 #include <string>

@@ -2,6 +2,10 @@
 
 #include "sqlite_database.hpp"
 
+#include <sqlite3.h>
+
+#include <string>
+
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 

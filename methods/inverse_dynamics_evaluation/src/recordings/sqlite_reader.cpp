@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <sqlite3.h>
+
 #include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "bytes.hpp"
 #include "sqlite_database.hpp"

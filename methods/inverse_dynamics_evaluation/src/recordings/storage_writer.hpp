@@ -3,6 +3,7 @@
 /// The file of a new recording, in either kind of storage.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>

@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "../figures.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"

@@ -3,6 +3,9 @@
 #include "text.hpp"
 
 #include <chain_dynamics/text.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <string>
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {

@@ -11,8 +11,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <new>
+#include <string>
 #include <system_error>
 #include <tuple>
 #include <utility>

@@ -3,6 +3,7 @@
 /// Compressed data, unpacked within limits: a few kilobytes may unpack to many gigabytes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>

@@ -30,6 +30,7 @@
 
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/model.hpp>
 #include <chain_dynamics/regressor_gram.hpp>
 #include <chain_dynamics/states.hpp>
 #include <utility>

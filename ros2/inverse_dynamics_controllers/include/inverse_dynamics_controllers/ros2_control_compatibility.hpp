@@ -9,6 +9,7 @@
 #include <array>
 #include <controller_interface/chainable_controller_interface.hpp>
 #include <controller_interface/controller_interface.hpp>
+#include <cstddef>
 #include <hardware_interface/handle.hpp>
 #include <limits>
 #include <memory>

@@ -7,6 +7,8 @@
 ///     Eigen::VectorXd tau = solver.getTorques(q, qd, qdd);     // N m, with friction
 #pragma once
 
+#include <inverse_dynamics_solver/configuration.hpp>
+
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
 namespace franka_inria_inverse_dynamics_solver {

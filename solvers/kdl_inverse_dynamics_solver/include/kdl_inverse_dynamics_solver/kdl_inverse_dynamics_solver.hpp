@@ -7,8 +7,11 @@
 ///     Eigen::VectorXd tau = solver->getTorques(q, qd, qdd);
 #pragma once
 
+#include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/spatial.hpp"
 #include "inverse_dynamics_solver/external_wrench.hpp"
 #include "inverse_dynamics_solver/forward_dynamics.hpp"
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 

@@ -16,7 +16,10 @@
 
 #include "chain_dynamics/fast_model.hpp"
 #include "chain_dynamics/model.hpp"
+#include "chain_dynamics/spatial.hpp"
+#include "chain_dynamics/states.hpp"
 #include "inverse_dynamics_solver/changeable_robot.hpp"
+#include "inverse_dynamics_solver/configuration.hpp"
 #include "inverse_dynamics_solver/coriolis_matrix.hpp"
 #include "inverse_dynamics_solver/energies.hpp"
 #include "inverse_dynamics_solver/external_wrench.hpp"

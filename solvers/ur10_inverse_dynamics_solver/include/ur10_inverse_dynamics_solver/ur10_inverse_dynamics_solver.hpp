@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include "inverse_dynamics_solver/configuration.hpp"
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/motor_currents.hpp"
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 

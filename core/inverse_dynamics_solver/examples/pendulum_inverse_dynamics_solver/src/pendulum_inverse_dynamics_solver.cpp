@@ -2,6 +2,7 @@
 #include "pendulum_inverse_dynamics_solver/pendulum_inverse_dynamics_solver.hpp"
 
 #include <cmath>
+#include <string>
 
 namespace pendulum_inverse_dynamics_solver {
 

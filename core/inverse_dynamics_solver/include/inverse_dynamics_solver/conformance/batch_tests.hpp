@@ -4,6 +4,10 @@
 /// conformance_tests.hpp, not this.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>

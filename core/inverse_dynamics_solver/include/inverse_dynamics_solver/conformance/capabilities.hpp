@@ -4,8 +4,10 @@
 /// to the promises of all methods. Include conformance_tests.hpp, not this.
 #pragma once
 
+#include <chain_dynamics/spatial.hpp>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"

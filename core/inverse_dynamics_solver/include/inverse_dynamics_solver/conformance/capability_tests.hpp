@@ -4,7 +4,20 @@
 /// conformance_tests.hpp, not this.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/model.hpp"
 #include "chain_dynamics/regressor.hpp"
+#include "chain_dynamics/spatial.hpp"
 #include "inverse_dynamics_solver/conformance/batch_tests.hpp"
 #include "inverse_dynamics_solver/conformance/capabilities.hpp"
 #include "inverse_dynamics_solver/conformance/law_tests.hpp"

@@ -4,11 +4,18 @@
 /// conformance_tests.hpp, not this.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <atomic>
+#include <chain_dynamics/chain.hpp>
+#include <cstddef>
+#include <functional>
 #include <limits>
 #include <new>
 #include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 #include "inverse_dynamics_solver/conformance/capabilities.hpp"

@@ -4,8 +4,11 @@
 /// conformance_tests.hpp, not this.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <iostream>
+#include <string>
 
 #include "inverse_dynamics_solver/conformance/initialization_tests.hpp"
 

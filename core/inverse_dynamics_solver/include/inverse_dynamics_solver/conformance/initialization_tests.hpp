@@ -4,7 +4,13 @@
 /// Include conformance_tests.hpp, not this.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 

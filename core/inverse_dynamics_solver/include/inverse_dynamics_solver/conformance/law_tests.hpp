@@ -4,7 +4,11 @@
 /// conformance_tests.hpp, not this.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <vector>
 
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 #include "inverse_dynamics_solver/motor_currents.hpp"

@@ -4,13 +4,21 @@
 /// conformance_tests.hpp, not this.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Geometry>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
+#include <exception>
 #include <functional>
+#include <iomanip>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "chain_dynamics/robot_description.hpp"
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"

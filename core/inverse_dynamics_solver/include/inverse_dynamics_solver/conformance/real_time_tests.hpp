@@ -4,9 +4,12 @@
 /// this.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "inverse_dynamics_solver/conformance/capabilities.hpp"
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"

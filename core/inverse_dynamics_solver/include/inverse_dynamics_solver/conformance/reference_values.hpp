@@ -12,6 +12,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>

@@ -5,8 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <fstream>
+#include <initializer_list>
 #include <inverse_dynamics_solver/installed_package.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <lifecycle_msgs/msg/state.hpp>
@@ -16,6 +19,7 @@
 #include <rclcpp/rclcpp.hpp>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 

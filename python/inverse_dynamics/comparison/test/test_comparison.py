@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+import re
+from dataclasses import replace
+
+import pytest
+from example_evaluations import make_evaluation
+
+from inverse_dynamics import cli, write_evaluation
+from inverse_dynamics._core import Effort
+from inverse_dynamics.comparison.comparison import compare
+from inverse_dynamics.errors import UserError
+
+
+@pytest.fixture(scope="module")
+def evaluation():
+    return make_evaluation()
+
+
+def currents(*gains):
+    return Effort("current", "as given", gains)
+
+
+def test_runs_are_called_by_what_differs(evaluation):
+    robot = replace(evaluation.robot, plugin="a/Other", friction=False)
+    compared = compare([evaluation, replace(evaluation, robot=robot)])
+    assert compared.labels == ("B", "Other, without friction")
+
+
+def test_other_recordings_are_refused(evaluation):
+    text = (
+        r"expected evaluations of one recording, got recording \(400 samples\) and recording \(300"
+    )
+    with pytest.raises(UserError, match=text):
+        compare([evaluation, make_evaluation(300)])
+    log = replace(evaluation.log, effort=evaluation.log.effort + 1)
+    other = replace(evaluation, log=log, measured=log.effort)
+    with pytest.raises(UserError, match="evaluate the same recording with each solver"):
+        compare([evaluation, other])
+
+
+@pytest.mark.parametrize(
+    ("first", "other", "said"),
+    [
+        (
+            Effort(stated_by="as the recording's format says"),
+            currents(2.0, 3.0, 4.0),
+            "got 'torque, as the recording's format says' and 'current, as given, with drive gains 2 "
+            "3 4 N m/A', so measured torques differ; evaluate again with the same "
+            "--effort-is",
+        ),
+        (currents(2.0, 3.0, 4.0), currents(2.0, 3.0, 5.0), "with drive gains 2 3 5 N m/A'"),
+    ],
+)
+def test_other_meanings_of_the_same_efforts_are_refused_with_the_reason(
+    evaluation, first, other, said
+):
+    recorded = evaluation.log.effort
+    runs = [replace(evaluation, effort=e, measured=e.torques(recorded)) for e in (first, other)]
+    with pytest.raises(UserError, match=re.escape(said)) as caught:
+        compare(runs)
+    assert str(caught.value).startswith("compare: recording: expected evaluations with one mea")
+
+
+def test_the_verb_says_what_it_needs(tmp_path, evaluation, capsys):
+    write_evaluation(evaluation, tmp_path / "run", figures=())
+    run = str(tmp_path / "run")
+    for arguments, said in (
+        ([run], "compare: expected two evaluations or more, got 1"),
+        ([run, run, "--labels", "one"], "compare: expected 2 labels, got 1"),
+        ([run, run, "--labels", "a,a"], "expected a label of its own for each run, got twice: a"),
+        ([run, str(tmp_path)], "holds no evaluation.json; expected one written by `ids evaluate`"),
+    ):
+        assert cli.main(["compare", *arguments]) == 2
+        assert said in capsys.readouterr().err
+    assert cli.main(["compare", run, run, "--labels", "one,two"]) == 0
+    assert "two" in capsys.readouterr().out

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from example_recordings import STORE, joint_log, write_messages
+from rosbags.rosbag2 import Reader
+
+from inverse_dynamics.errors import BagError
+from inverse_dynamics.recordings.bags import (
+    TopicSummary,
+    read_joint_log,
+    read_topics,
+    write_joint_logs,
+)
+
+TOPIC = "/joint_states"
+STORAGES = pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
+JOINTS = ("joint_1", "joint_2", "joint_3")
+
+
+@pytest.fixture
+def bag(tmp_path: Path) -> Path:
+    write_joint_logs(tmp_path / "bag", {TOPIC: joint_log()})
+    return tmp_path / "bag"
+
+
+def storage_file(bag: Path) -> Path:
+    return next(f for f in bag.iterdir() if f.suffix in {".db3", ".mcap"})
+
+
+def fails(bag: Path, *expected: str, **options: object) -> str:
+    """Reading fails with a text that has each of the expected parts, the path first."""
+    with pytest.raises(BagError) as caught:
+        read_joint_log(bag, **options)
+    text = str(caught.value)
+    assert text.startswith(str(bag))
+    for part in expected:
+        assert part in text
+    return text
+
+
+# What is written is read back.
+
+
+@STORAGES
+def test_joint_states_are_read_back_as_they_were_written(tmp_path, storage):
+    log = joint_log(9000, frame_id="base")  # more than one block
+    write_joint_logs(tmp_path / "bag", {TOPIC: log}, storage=storage)
+    for path in (tmp_path / "bag", storage_file(tmp_path / "bag")):
+        read = read_joint_log(path, JOINTS, topic=TOPIC)
+        for field in ("header_stamps", "receive_stamps", "q", "qd", "effort"):
+            np.testing.assert_array_equal(getattr(read, field), getattr(log, field))
+        assert read.joint_names == JOINTS
+        assert (read.frame_id, read.clock, read.topic, read.storage) == (
+            "base",
+            "header",
+            TOPIC,
+            storage,
+        )
+        assert read.notes == ()
+
+
+@STORAGES
+def test_two_topics_are_interleaved_and_told_apart(tmp_path, storage):
+    log = joint_log(10)
+    other = replace(log, effort=2 * log.effort)
+    write_joint_logs(tmp_path / "bag", {"/torques": other, "/torques_gt": log}, storage=storage)
+    kind = "sensor_msgs/msg/JointState"
+    assert read_topics(tmp_path / "bag") == [
+        TopicSummary("/torques", kind, 10),
+        TopicSummary("/torques_gt", kind, 10),
+    ]
+    np.testing.assert_array_equal(
+        read_joint_log(tmp_path / "bag", topic="/torques").effort, other.effort
+    )
+    with Reader(tmp_path / "bag") as reader:
+        topics = [c.topic for c, _, _ in reader.messages(connections=reader.connections)]
+    assert topics == ["/torques", "/torques_gt"] * 10
+
+
+def test_progress_counts_messages_to_the_end(bag):
+    calls = []
+    read_joint_log(bag, progress=lambda *call: calls.append(call))
+    assert calls[-1] == ("reading", 50, 50)
+
+
+# Which time.
+
+
+def test_unknown_clock_is_an_error(bag):
+    with pytest.raises(BagError, match="expected one of auto, header, receive, got 'wall'"):
+        read_joint_log(bag, clock="wall")
+
+
+# What isn't a recording.
+
+
+def test_directory_without_metadata_names_the_remedy(bag):
+    (bag / "metadata.yaml").unlink()
+    fails(bag, "has no metadata.yaml", f"give {bag / 'bag.db3'} itself", "ros2 bag reindex")
+
+
+def test_ros_1_recording_names_the_converter(tmp_path):
+    (tmp_path / "old.bag").write_bytes(b"#ROSBAG V2.0\n")
+    fails(tmp_path / "old.bag", "is a ROS 1 recording", "rosbags-convert --src")
+
+
+@pytest.mark.parametrize("name", ["bag.db3", "bag.mcap"])
+def test_empty_file_is_an_error(tmp_path, name):
+    (tmp_path / name).touch()
+    fails(tmp_path / name, "is empty (0 bytes)")
+
+
+@pytest.mark.parametrize("name", ["bag.db3", "bag.mcap"])
+def test_file_of_noise_is_an_error(tmp_path, name):
+    (tmp_path / name).write_bytes(np.random.default_rng(0).bytes(5000))
+    fails(tmp_path / name, "can't be read as a rosbag2 recording", "copy or record it again")
+
+
+def test_recording_of_a_recorder_that_was_killed_names_the_remedy(bag):
+    import sqlite3
+
+    file = storage_file(bag)
+    database = sqlite3.connect(file)
+    database.execute("PRAGMA journal_mode=WAL")
+    database.execute("DELETE FROM messages WHERE id > 40")
+    database.commit()  # and no checkpoint
+    text = "is incomplete: some of its messages are in bag.db3-wal still; put them in with `sqlite3"
+    with pytest.raises(BagError, match=text):
+        read_joint_log(bag)
+    with pytest.raises(BagError, match=text):
+        read_joint_log(file)
+    database.close()
+
+
+def test_missing_storage_file_is_an_error(bag):
+    storage_file(bag).unlink()
+    fails(bag, "can't be read as a rosbag2 recording", "missing")
+
+
+def test_topic_of_another_type_is_an_error(tmp_path):
+    kind = "std_msgs/msg/String"
+    text = STORE.types[kind]("hello")
+    write_messages(tmp_path / "bag", [text], topic="/chatter", message_type=kind)
+    fails(
+        tmp_path / "bag",
+        "topic /chatter: expected type sensor_msgs/msg/JointState, got std_msgs/msg/String",
+        "--topic",
+        topic="/chatter",
+    )
+    fails(tmp_path / "bag", "expected one topic of type sensor_msgs/msg/JointState, got 0")
+
+
+# What can't be written.
+
+
+def test_recording_that_can_not_be_written_is_an_error(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(BagError, match="can't be written"):
+        write_joint_logs(tmp_path / "file" / "bag", {TOPIC: joint_log()})
+
+
+def test_unknown_storage_is_an_error(tmp_path):
+    with pytest.raises(BagError, match="expected one of sqlite3, mcap, got 'csv'"):
+        write_joint_logs(tmp_path / "bag", {TOPIC: joint_log()}, storage="csv")
+    assert not (tmp_path / "bag").exists()
