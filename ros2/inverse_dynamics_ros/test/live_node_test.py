@@ -412,8 +412,8 @@ class TestExternalTorques(unittest.TestCase):
         return future.result().results[0]
 
     def test_1_are_what_efforts_have_beyond_the_model(self):
-        self.play(0.5)
-        self.assertGreater(len(self.torques), 50)
+        # The first ones may be lost: topics may not be connected yet.
+        self.until(lambda: self.play(0.5) or len(self.torques) > 50, "few torques")
         self.assertLess(max(abs(m.effort[0]) for m in self.torques), 0.1)
         self.assertFalse(any(m.data for m in self.flags))
         self.clear()
