@@ -34,8 +34,7 @@ _MOST_NAMED = 5  # files, in a text
 _FILE = "name another file with --out"
 _DIRECTORY = "name another directory with --out"
 
-_outputs: dict[Path, bool] = {}  # of this process, and whether they were written
-_replaced: list[Path] = []
+_outputs: dict[Path, str] = {}  # of this process: "", "written", "replaced" an earlier result
 _at_work: list[Path] = []  # work folders
 
 
@@ -51,10 +50,6 @@ class Contents:
     mark: str
     files: tuple[str, ...]
     added: tuple[str, ...] = ()
-
-    def has(self, path: PurePath, directory: Path) -> bool:
-        """Whether the command itself writes that path, relative to the directory."""
-        return _matches(path, self.files, directory)
 
     def foreign(self, directory: Path) -> list[str]:
         """Paths in the directory that the user, or another program, has put there. Raises OSError."""
@@ -133,20 +128,18 @@ def files_written_whole(targets: Sequence[Path]) -> Iterator[list[Path]]:
     They are renamed in this order; a process that is killed meanwhile leaves some new ones. Where a
     target is a symbolic link, what it points to is replaced.
     """
-    places = [Path(os.path.realpath(target)) for target in targets]
+    pairs = [(target, Path(os.path.realpath(target))) for target in targets]
     for target in targets:
         _note(target)
     with ExitStack() as stack:
-        fresh = [
-            stack.enter_context(_made(*pair, _FILE)) for pair in zip(targets, places, strict=True)
-        ]
+        fresh = [stack.enter_context(_made(*pair, _FILE)) for pair in pairs]
         for target in targets:
             _check_regular(target, _FILE)
         yield fresh
         with signals_deferred():
-            _put(fresh, places)
+            _put(fresh, [place for _, place in pairs])
             for target in targets:
-                _note(target, written=True)
+                _note(target, "written")
 
 
 @contextmanager
@@ -170,29 +163,29 @@ def written_whole(
             _check_existing_directory(target, overwrite=overwrite, contents=contents)
             older = place.exists() and any(place.iterdir())
             _put([fresh], [place])
-            _note(target, written=True, older=older)
+            _note(target, "replaced" if older else "written")
 
 
 def start_noting_outputs() -> None:
     """Forget what earlier calls have written: outcome() is of what follows."""
     _outputs.clear()
-    _replaced.clear()
 
 
 def replaced() -> str:
     """Earlier results that were replaced since, in words; "": none."""
-    return f"replaced the earlier result in {', '.join(map(str, _replaced))}" if _replaced else ""
+    paths = [str(path) for path, state in _outputs.items() if state == "replaced"]
+    return f"replaced the earlier result in {', '.join(paths)}" if paths else ""
 
 
 def written_before() -> str:
     """Outputs that were written before another one failed, in words; "": none."""
-    written = [str(path) for path, done in _outputs.items() if done]
+    written = [str(path) for path, state in _outputs.items() if state]
     return f"written before, whole: {', '.join(written)}" if written else ""
 
 
 def outcome() -> str:
     """State of the outputs, in words: written, or as before."""
-    kept = [str(path) for path, done in _outputs.items() if not done and os.path.lexists(path)]
+    kept = [str(path) for path, state in _outputs.items() if not state and os.path.lexists(path)]
     text = written_before().replace("written before", "written") or "nothing was written"
     return text + (f"; as it was before: {', '.join(kept)}" if kept else "")
 
@@ -213,10 +206,8 @@ def signals_deferred() -> Iterator[None]:
     try:
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-                handler = signal.getsignal(number)
-                if handler not in (None, signal.SIG_IGN):
-                    before[number] = handler
-                    signal.signal(number, lambda number, _: arrived.append(number))
+                if signal.getsignal(number) not in (None, signal.SIG_IGN):
+                    before[number] = signal.signal(number, lambda number, _: arrived.append(number))
         yield
     finally:
         for number, handler in before.items():
@@ -225,11 +216,10 @@ def signals_deferred() -> Iterator[None]:
             signal.raise_signal(caught)
 
 
-def _note(target: Path, *, written: bool = False, older: bool = False) -> None:
+def _note(target: Path, state: str = "") -> None:
     """For outcome() and replaced(). A part of what is being made isn't noted."""
     if not any(work in target.absolute().parents for work in _at_work):
-        _outputs[target] = written or _outputs.get(target, False)
-        _replaced.extend([target] if older else [])
+        _outputs[target] = state or _outputs.get(target, "")
 
 
 @contextmanager
@@ -245,9 +235,7 @@ def _output(target: Path, remedy: str) -> Iterator[None]:
             target.lstat()  # else too long, for one
         yield
     except OSError as error:
-        kept = ""
-        with suppress(OSError):
-            kept = "; what was there is kept" if os.path.lexists(target) else ""
+        kept = "; what was there is kept" if os.path.lexists(target) else ""
         room = "free some space, or " if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
         raise OutputError(
             f"{target}: can't be written ({error.strerror or error}){kept}; {room}{remedy}"
@@ -257,7 +245,7 @@ def _output(target: Path, remedy: str) -> Iterator[None]:
 @contextmanager
 def _made(target: Path, place: Path, remedy: str) -> Iterator[Path]:
     """Path to make what is then renamed to `place`, in a work folder that is removed at the end."""
-    work = place.with_name(f".{place.name[:50]}.{secrets.token_hex(4)}.part")
+    work = place.parent / f".{place.name[:50]}.{secrets.token_hex(4)}.part"
     fresh = work / "new" / place.name
     with _output(target, remedy):
         try:
@@ -350,7 +338,9 @@ def _check_apart(
                 f"{target}: {relation} {source}, which is read and would be replaced; {remedy}"
             )
         around = next((part for part in place.parents if _same(part, read)), None)
-        if around and not (results and not results.has(place.relative_to(around), around)):
+        if around and not (
+            results and not _matches(place.relative_to(around), results.files, around)
+        ):
             raise OutputError(f"{target}: lies in {source}, which is read; {remedy}")
 
 
