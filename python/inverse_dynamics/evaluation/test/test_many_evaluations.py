@@ -20,10 +20,9 @@ from example_robots import RIGID_BODY, URDF
 
 from inverse_dynamics import Solver, evaluate, evaluate_many, write_joint_logs
 from inverse_dynamics.errors import ArgumentError, BagError, OutputError, UserError
-from inverse_dynamics.evaluation import many_evaluations
+from inverse_dynamics.evaluation import exports, many_evaluations
 from inverse_dynamics.evaluation.many_evaluations import COLUMNS
 from inverse_dynamics.evaluation.workers import outcome_of
-from inverse_dynamics.export import exports
 
 ROBOT = ("--robot", "ur10_simulated")
 RAW = ("--accelerations", "backward-difference")
@@ -277,7 +276,9 @@ def test_a_signal_ends_all_workers_and_leaves_nothing(bags, tmp_path, number):
 
 def test_what_no_recording_can_be_evaluated_with_is_an_error_at_once(bags, tmp_path):
     out = tmp_path / "week"
-    with pytest.raises(ArgumentError, match="evaluate: argument cutof: unknown; did you mean cut"):
+    with pytest.raises(
+        ArgumentError, match="evaluate_many: argument cutof: unknown; did you mean cut"
+    ):
         evaluate_many(bags, "ur10_simulated", out, cutof=3.0)
     with pytest.raises(ArgumentError, match="argument jobs: expected a whole number or None"):
         evaluate_many(bags, "ur10_simulated", out, jobs="two")
