@@ -18,7 +18,7 @@ OWN_SHARE = "package://inverse_dynamics_robots/"
 REQUIRED = {"schema", "name", "description", "plugin", "urdf", "root", "tip", "gravity", "topic"}
 REQUIRED |= {"joints", "friction", "effort", "accelerations", "source"}
 OPTIONAL = {"model", "drive_gains", "parameters", "simulation"}
-DOCUMENTATION = PACKAGE.parent / "docs/add_a_robot.md"
+DOCUMENTATION = PACKAGE.parents[1] / "docs/add_a_robot.md"
 
 
 def read(file: Path) -> dict[str, Any]:
