@@ -26,7 +26,8 @@ FENCE = re.compile(r"^ *```.*?^ *```", re.MULTILINE | re.DOTALL)
 def doxygen_link(text: str, page: str, header: Path) -> str:
     """HTML, since MkDocs would report a Markdown link to a page that Doxygen writes later as broken."""
     # Doxygen names its page after the file, or after its path where two files have that name.
-    unique = len([*ROOT.glob(f"*/*/include/**/{header.name}")]) == 1
+    rooms = ("core", "solvers", "methods", "ros2")
+    unique = sum(len([*(ROOT / r).glob(f"*/include/**/{header.name}")]) for r in rooms) == 1
     name = header.name if unique else str(header)
     file = name.replace("_", "__").replace("/", "_2").replace(".", "_8")
     return f'<a href="{"../" * page.count("/")}cpp/{file}.html">{text}</a>'

@@ -23,7 +23,8 @@ WITHOUT = (
 
 HEADERS = [
     path
-    for path in sorted(REPOSITORY.glob("*/*/include/**/*.hpp"))
+    for room in ("core", "solvers", "methods", "ros2")
+    for path in sorted((REPOSITORY / room).glob("*/include/**/*.hpp"))
     if not any(part in str(path.relative_to(REPOSITORY)) for part in WITHOUT)
     and "\nnamespace " in path.read_text(encoding="utf-8")
 ]

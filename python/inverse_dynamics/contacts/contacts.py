@@ -140,14 +140,27 @@ def find_contacts(
 ) -> Contacts:
     """Find the contacts of a recording.
 
-    quiet: from, to [s] of a part without contact; quiet_recording: a recording without contact; both:
-    that part of that recording; none: the errors that `ids identify` found on held-out data.
-    false_alarms: per hour. gain: 1/s; none: gain_for() of the recording that thresholds are made of.
-    tracking: rad/s, of velocities from positions; none: recorded velocities. friction_band: N m, one
-    number per joint, or one for all: what the friction model may be wrong by beyond what the quiet part
-    shows, whose thresholds are made without it. options: others of evaluate().
+    Parameters
+    ----------
+    bag, robot, **options
+        As evaluate() takes them.
+    quiet, quiet_recording
+        From, to [s] of a part without contact; a recording without contact; both: that part of that recording;
+        none: the errors that `ids identify` found on held-out data.
+    false_alarms
+        Per hour.
+    gain
+        1/s; none: gain_for() of the recording that thresholds are made of.
+    tracking
+        rad/s, of velocities from positions; none: recorded velocities.
+    friction_band
+        N m, one number per joint, or one for all: what the friction model may be wrong by beyond what the quiet part
+        shows, whose thresholds are made without it.
 
-    Raises UserError: those of evaluate(), InvalidParameterError.
+    Raises
+    ------
+    UserError
+        Those of evaluate(), InvalidParameterError.
     """
     if quiet is not None and not -_LATEST < quiet[0] < quiet[1] < _LATEST:
         raise EvaluationError(

@@ -121,9 +121,17 @@ def open_run(
     scratch: Path | str = "",
     **options: Unpack[RunOptions],
 ) -> Run:
-    """Read a recording, and make its robot's solver. Arguments: those of evaluate().
+    """Read a recording, and make its robot's solver.
 
-    Raises UserError: BagError, RobotError, SolverError, EvaluationError.
+    Parameters
+    ----------
+    recording, robot, scratch, **options
+        As evaluate() takes them.
+
+    Raises
+    ------
+    UserError
+        BagError, RobotError, SolverError, EvaluationError.
     """
     robot = overridden(robot, options)
     topic, clock = options.get("topic"), options.get("clock", "auto")

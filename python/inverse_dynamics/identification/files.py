@@ -95,7 +95,26 @@ def write_identification(
     more: Mapping[Path, str] | None = None,
     tests: Sequence[HoldOut] = (),
 ) -> IdentificationFiles:
-    """Write all files, or none of them. more: texts of others, by file. Raises OutputError."""
+    """Write all files of a model, or none of them: those that `ids identify --help` lists.
+
+    Parameters
+    ----------
+    found
+        The model.
+    out
+        The run configuration, a .yaml file; the others have its name.
+    overwrite
+        Replace older files.
+    more
+        Texts of further files, by file.
+    tests
+        Errors on recordings that nothing was fitted to.
+
+    Raises
+    ------
+    UserError
+        OutputError.
+    """
     more = more or {}
     inputs = (*found.recordings, *found.robot.files)
     options = {f"{file}": file for file in more}

@@ -167,10 +167,17 @@ def estimate_payload(
 ) -> Payload:
     """Estimate what the robot carries in a recording.
 
-    empty: a recording of the same robot without the load: its torques tell offsets and noise.
-    options: others of evaluate(), for both.
+    Parameters
+    ----------
+    bag, robot, **options
+        As evaluate() takes them.
+    empty
+        A recording of the same robot without the load: its torques tell offsets and noise.
 
-    Raises UserError: those of evaluate(), PayloadError.
+    Raises
+    ------
+    UserError
+        Those of evaluate(), PayloadError.
     """
     evaluation = evaluate(bag, robot, progress=progress, **options)
     _require_own_tip(evaluation.robot, options.get("tip"))

@@ -56,6 +56,7 @@ class Sensor : public ControllerFixture<ExternalWrenchBroadcaster> {
 
   bool start() {
     Parameters parameters = good();
+    parameters.erase("damping.values");  // a controller's
     parameters["noise"] = rclcpp::ParameterValue(std::vector<double>{1e-3});
     if (!configure(parameters)) return false;
     listener_ = std::make_shared<rclcpp::Node>("listener");

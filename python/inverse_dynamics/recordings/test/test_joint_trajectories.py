@@ -17,8 +17,8 @@ from example_robots import JOINTS, RIGID_BODY, URDF
 from rosbags.rosbag2 import StoragePlugin, Writer
 
 from inverse_dynamics import Solver, evaluate, read_recording
-from inverse_dynamics.data.joint_trajectories import decode
 from inverse_dynamics.errors import BagError
+from inverse_dynamics.recordings.joint_trajectories import decode
 
 
 @pytest.fixture(scope="module")

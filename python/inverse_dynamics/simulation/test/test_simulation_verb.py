@@ -13,9 +13,9 @@ import yaml
 from simulation_arms import pendulum, two_links, write_robot
 
 from inverse_dynamics.cli import main
+from inverse_dynamics.excitation import excitation
 from inverse_dynamics.excitation.excitation import ExcitationOptions
 from inverse_dynamics.recordings.bags import read_joint_log
-from inverse_dynamics.simulation import run as run_module
 
 TRAJECTORY = """\
 schema: 1
@@ -138,7 +138,7 @@ def test_options_without_a_value_have_stated_defaults(arm: list[str], tmp_path: 
 
 def searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *options: str) -> Path:
     """A recording whose motion a short search has found."""
-    monkeypatch.setattr(run_module, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
+    monkeypatch.setattr(excitation, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
     robot, bag = write_robot(tmp_path, two_links(), "", "tip: tip\n"), tmp_path / "bag"
     command = ["simulate", "--robot", str(robot), "--rate", "125", "--duration", "0.2"]
     assert main([*command, "--out", str(bag), *options]) == 0

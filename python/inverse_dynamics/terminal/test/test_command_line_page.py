@@ -21,7 +21,11 @@ def verbs(parser: argparse.ArgumentParser) -> dict[str, str]:
     """The lines of `ids --help`, without those of packages that are built on request."""
     (action,) = (a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
     lines = {choice.dest: choice.help for choice in action._choices_actions}
-    return {verb: line for verb, line in lines.items() if verb in cli.verb_modules()}
+    return {
+        verb: line
+        for verb, line in lines.items()
+        if verb in cli.verb_modules().keys() - cli.BUILT_ON_REQUEST.keys()
+    }
 
 
 def test_the_table_of_verbs_is_that_of_the_help() -> None:
