@@ -36,7 +36,7 @@ HERE = Path(__file__).resolve().parent
 MARK = "golden.txt"  # in DIR: its absolute path when it was made
 MASKS = (  # paths of the installation, files of reports, lines of progress, places of warnings, addresses, a date
     (rb"(?<![\w.+@~/-])(?:/[\w.+@~-]+)+(?=/share/inverse_dynamics_robots/)", b"PREFIX"),
-    (rb"/tmp/ids-error-\w+\.txt", b"REPORT"),
+    (rb"/\w+/ids-error-\w+\.txt", b"REPORT"),
     (rb"ids: [^\n]*: \d+ % done after \d+ s \.\.\.\n", b""),
     (rb"(?<![\w.+@~/-])(?:/[\w.+@~-]+)+\.py:\d+(?=: \w+Warning)", b"MODULE"),
     (rb" at 0x[0-9a-f]+>", b">"),
