@@ -53,8 +53,10 @@ double secondsOfProcessor() {
 
 std::vector<JointStateTopic> topics(std::size_t count) {
   std::vector<std::string> joints;
+  joints.reserve(kJoints);
   for (std::size_t j = 0; j < kJoints; ++j) joints.push_back("panda_joint" + std::to_string(j + 1));
   std::vector<JointStateTopic> found;
+  found.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     found.push_back({i == 0 ? "/torques" : "/torques_gt", joints, "base"});
   }
