@@ -31,7 +31,7 @@ NEEDED = (
 def needed(names: list[str]) -> list[str]:
     """What a user finds inside a wheel of these files."""
     found = list(NEEDED)
-    for include in ROOT.glob("*/*/include"):
+    for include in ROOT.glob("[cms]*/*_*/include"):  # core, methods, solvers
         package = include.parent.name
         if f"inverse_dynamics/lib/lib{package}.so" in names:
             headers = include.rglob("*.hpp")
