@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments that a function doesn't take: an error that names the argument, what was expected and got.
+"""Wrong arguments: one line that names the function, the argument, what was expected and what was given.
 
-refused("Solver", "__init__(self: Solver, plugin: str) -> None", [solver], {})
-# Solver: argument plugin: expected a text, got none
+Solver("ur10_real", tpi="tool0")  # Solver: argument tpi: unknown; did you mean tip?
 """
 
 from __future__ import annotations
@@ -10,74 +9,31 @@ from __future__ import annotations
 import ast
 import os
 import re
+import sys
+from collections.abc import Sized
 from contextlib import suppress
 from functools import wraps
-from inspect import Parameter, Signature, signature
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from inspect import Parameter, Signature, isroutine, signature
+from reprlib import repr as short
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, SupportsFloat, SupportsIndex, TypeVar
 
 import numpy as np
 
 from inverse_dynamics.errors import ArgumentError
-from inverse_dynamics.wording import counted, did_you_mean, harmless, shown
+from inverse_dynamics.wording import did_you_mean, harmless
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable
+    from types import ModuleType
 
 _Result = TypeVar("_Result")
 _Arguments = ParamSpec("_Arguments")
 
 
-def refused(
-    function: str, text: str, positional: Sequence[object], named: Mapping[str, object]
-) -> ArgumentError:
-    """The error of a call of a bound function; text: its docstring, which begins with its signature.
-
-    function: the name of a function, of a method with its class (`Solver.torques`), or
-    `Solver.__init__`.
-    """
-    function, error = function.removesuffix(".__init__"), None
-    with suppress(AttributeError):
-        parameters = list(signature_of(text).parameters.values())
-        error = _mistake(function, parameters, positional, named)
-    if error is None:
-        types = ", ".join(_kind(value) for value in (*positional, *named.values()))
-        head = text.partition("\n")[0]
-        error = f"{function}: arguments: expected {head}, got {types}"
-    return ArgumentError(error)
-
-
-def signature_of(text: str) -> Signature:
-    """The signature that a docstring of pybind11 begins with; a default that is no literal is `...`.
-
-    Raises AttributeError where it isn't Python, as C++ is, which pybind11 writes for types that it doesn't know.
-    """
-    head = re.sub(r"= <[^>]*>", "= ...", text.partition("\n")[0])
-    try:
-        tree = ast.parse(f"def {head}: ...")
-    except SyntaxError as error:
-        raise AttributeError(f"no signature: {head}") from error
-    (definition,) = tree.body
-    assert isinstance(definition, ast.FunctionDef)
-    arguments = definition.args
-    arguments.defaults = [_literal(default) for default in arguments.defaults]
-    arguments.kw_defaults = [default and _literal(default) for default in arguments.kw_defaults]
-    names: dict[str, Any] = {}
-    exec(compile(tree, "signature", "exec", annotations.compiler_flag), names)
-    return signature(names[definition.name])
-
-
-def _literal(default: ast.expr) -> ast.expr:
-    try:
-        ast.literal_eval(default)
-    except ValueError:
-        return ast.copy_location(ast.Constant(...), default)
-    return default
-
-
 def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
     """The function, which raises ArgumentError for arguments that its annotations don't allow.
 
-    Its signature names what it takes as `**options: Unpack[OPTIONS]`, a dictionary type of its module.
+    Options that it takes as `**options: Unpack[OPTIONS]`, a TypedDict of its module, are in its signature.
     """
 
     @wraps(function)
@@ -85,175 +41,153 @@ def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Re
         check_call(call, *args, **kwargs)
         return function(*args, **kwargs)
 
-    call.__signature__ = _unpacked(function)  # type: ignore[attr-defined]
+    *parameters, last = signature(function).parameters.values()
+    if last.kind is Parameter.VAR_KEYWORD:
+        options = function.__globals__[last.annotation[len("Unpack[") : -1]].__annotations__
+        parameters += [
+            Parameter(name, Parameter.KEYWORD_ONLY, default=..., annotation=kind.__forward_arg__)
+            for name, kind in options.items()
+        ]
+        own = signature(function).replace(parameters=parameters)
+        call.__signature__ = own  # type: ignore[attr-defined]
     return call
 
 
-def _unpacked(function: Callable[..., object]) -> Signature:
-    """The signature with a parameter for each of its options."""
-    own = signature(function)
-    *parameters, last = own.parameters.values()
-    if last.kind is not Parameter.VAR_KEYWORD:
-        return own
-    options = function.__globals__[last.annotation.removeprefix("Unpack[").removesuffix("]")]
-    parameters += [
-        Parameter(name, Parameter.KEYWORD_ONLY, default=..., annotation=kind.__forward_arg__)
-        for name, kind in options.__annotations__.items()
-    ]
-    return own.replace(parameters=parameters)
-
-
-def check_call(function: Callable[..., object], *args: object, **kwargs: object) -> None:
-    """Raise the ArgumentError that a checked function would raise of these arguments; don't call it."""
-    error = _mistake(function.__name__, list(signature(function).parameters.values()), args, kwargs)
-    if error is not None:
-        raise ArgumentError(error)
-
-
-def _mistake(
-    function: str,
-    parameters: Sequence[Parameter],
-    positional: Sequence[object],
-    named: Mapping[str, object],
-) -> str | None:
-    """The first mistake in the arguments; None if there is none."""
-    places = [p.name for p in parameters if p.kind is not Parameter.KEYWORD_ONLY]
-    known = [p.name for p in parameters if p.name != "self"]
-    if len(positional) > len(places):
-        first = int("self" in places)
-        most, got = len(places) - first, len(positional) - first
-        return f"{function}: expected at most {counted(most, 'argument')} without a name, got {got}"
-    given = dict(zip(places, positional, strict=False))
-    for name, value in named.items():
-        where = f"{function}: argument {harmless(name)}"
-        if name in given:
-            return f"{where}: expected once, got twice"
-        if name not in known:
-            hint = did_you_mean(name, known)
-            return f"{where}: unknown; {f'{hint} ' if hint else ''}known: {', '.join(known)}"
-        given[name] = value
-    for parameter in parameters:
-        expected, fits = _expectation(str(parameter.annotation))
-        where = f"{function}: argument {parameter.name}: expected {expected}"
-        if parameter.name not in given:
-            if parameter.default is Parameter.empty:
-                return f"{where}, got none"
-        elif not fits(given[parameter.name]):
-            return f"{where}, got {_kind(given[parameter.name], of='three' in expected)}"
-    return None
-
-
-# ---------------------------------------------------------------- types
-
-
-def _is_number(value: object) -> bool:
-    return hasattr(value, "__float__") or hasattr(value, "__index__")
-
-
-def _is_array(value: object) -> bool:
+def check_call(function: Callable[..., object], /, *args: object, **kwargs: object) -> None:
+    """Raise the ArgumentError that a function would raise of these arguments; don't call it."""
+    place, known = function.__qualname__.removesuffix(".__init__"), signature(function).parameters
+    names = [name for name in known if name != "self"]
+    unknown = [name for name in kwargs if name not in names]
+    if unknown and all(p.kind is not Parameter.VAR_KEYWORD for p in known.values()):
+        hint = did_you_mean(unknown[0], names) or f"known: {', '.join(names)}"
+        raise ArgumentError(f"{place}: argument {harmless(unknown[0])}: unknown; {hint}")
     try:
-        return np.asarray(value).dtype.kind in "biuf"
-    except ValueError:  # rows of different lengths
+        given = signature(function).bind(*args, **kwargs).arguments
+    except TypeError as error:
+        by_name = [n for n in names if known[n].kind is Parameter.KEYWORD_ONLY]
+        takes = [n for n in names if n not in by_name]
+        takes += [f"{n}=" for n in by_name if known[n].default is Parameter.empty]
+        raise ArgumentError(f"{place}: {error}; it takes {', '.join(takes) or 'none'}") from None
+    for key, value in given.items():
+        expected = _readable(str(known[key].annotation))
+        if not _fits(value, expected):
+            raise ArgumentError(f"{place}: argument {key}: expected {expected}, got {_kind(value)}")
+
+
+def explain(module: ModuleType, wrapped: Callable[[object, dict[str, str]], Any]) -> None:
+    """Wrap what a module of pybind11 has bound, so that it has signatures and readable errors."""
+    owners: list[Any] = [module, *(v for v in vars(module).values() if isinstance(v, type))]
+    for owner in owners:
+        for name, value in list(vars(owner).items()):
+            bound: Any = value if owner is module else getattr(value, "__func__", None)
+            if not isroutine(bound) or (name[0] == "_" and name != "__init__"):
+                continue
+            place = name if owner is module else f"{owner.__name__}.{name}"
+            doc = bound.__doc__ or ""
+            head, text = doc.partition("\n")[0], doc.partition("\n\n")[2]
+            about = {"__name__": name, "__qualname__": place, "__doc__": text, "head": head}
+            function = wrapped(bound, about)
+            type(function).__signature__ = property(signature_of)
+            is_static = isinstance(value, staticmethod)
+            setattr(owner, name, staticmethod(function) if is_static else function)
+
+
+def signature_of(function: Any) -> Signature:
+    """The signature in its docstring of pybind11; a default that is no literal is `...`."""
+    found = re.fullmatch(r"\w+\((.*?)\)(?: -> (.*))?", function.head)
+    assert found
+    parameters: list[Parameter] = []
+    kind: Any = Parameter.POSITIONAL_OR_KEYWORD
+    for text in re.split(r", (?=\w+: |\*)", found[1]) if found[1] else ():
+        name, _, rest = text.partition(": ")
+        annotation, optional, literal = rest.partition(" = ")
+        if name == "*":
+            kind = Parameter.KEYWORD_ONLY
+        elif name[0] == "*":
+            many = Parameter.VAR_KEYWORD if name[1] == "*" else Parameter.VAR_POSITIONAL
+            parameters.append(Parameter(name.strip("*"), many))
+        else:
+            default: object = ... if optional else Parameter.empty
+            with suppress(ValueError, SyntaxError):
+                default = ast.literal_eval(literal)
+            parameters.append(Parameter(name, kind, default=default, annotation=annotation))
+    return Signature(parameters, return_annotation=found[2])
+
+
+def raiser(function: Any, error: Exception) -> Callable[..., NoReturn] | None:
+    """What raises the readable error of a call that ended in this one; None: it isn't about arguments."""
+    if not re.match(r".*\): incompatible |Unable to cast Python instance", str(error)):
+        return None
+
+    def refuse(*args: object, **kwargs: object) -> NoReturn:
+        check_call(function, *args, **kwargs)
+        expected = _readable(function.head.partition(" -> ")[0])
+        got = ", ".join(map(_kind, (*args, *kwargs.values())))
+        raise ArgumentError(f"{function.__qualname__}: expected {expected}, got {got}")
+
+    return refuse
+
+
+_READABLE = {
+    r"\b(?:[A-Za-z_]\w*\.)+(?=\w)": "",  # modules
+    r"SupportsFloat( \| SupportsIndex)?": "float",
+    r"SupportsInt( \| SupportsIndex)?": "int",
+    r"Optional\[(.*)\]$": r"\1 | None",
+    r"Annotated\[\w+\[float\], .?FixedSize\(3\).?\]": "tuple[float, float, float]",
+    r"(?:ndarray\[|Annotated\[ArrayLike, )\w+(?:\[m, 1\]|, .\[m, 1\].)\]": "vector",
+    r"(?:ndarray\[|Annotated\[ArrayLike, )(\w+)\]": r"array of \1",
+}
+_CLASSES: dict[str, Any] = {
+    "None": type(None),
+    "bool": (bool, np.bool_),
+    "int": SupportsIndex,
+    "float": (SupportsFloat, SupportsIndex),
+    "str": str,
+    "Path": os.PathLike,
+    "PathLike": os.PathLike,
+}
+
+
+def _readable(annotation: str) -> str:
+    """A type without modules, and as Python has it: `float` of `typing.SupportsFloat | typing.SupportsIndex`."""
+    for of_pybind11, readable in _READABLE.items():
+        annotation = re.sub(of_pybind11, readable, annotation)
+    return annotation
+
+
+def _fits(value: Any, expected: str) -> bool:
+    """Whether a value is of a type as _readable() has it; True where that can't be told."""
+    return any(_is(value, kind) for kind in re.split(r" \| (?![^\[]*\])", expected))
+
+
+def _is(value: Any, kind: str) -> bool:
+    name, _, inner = kind.removesuffix("]").partition("[")
+    if name in _CLASSES:
+        return isinstance(value, _CLASSES[name]) and getattr(value, "ndim", 0) == 0
+    if name == "vector" or "rray" in name:
+        with suppress(ValueError):  # rows of different lengths
+            array = np.asarray(value)
+            fits = name != "vector" or array.ndim == 1 or array.shape[1:] == (1,)
+            return fits and array.dtype.kind in ("b" if "bool" in kind else "biuf")
         return False
-
-
-def _is_mask(value: object) -> bool:
-    return _is_array(value) and np.asarray(value).dtype.kind == "b"
-
-
-def _are(fits: Callable[[object], bool], count: int | None = None) -> Callable[[Any], bool]:
-    """Whether a value is a sequence, or an array, of such values, or of so many."""
-
-    def test(value: Any) -> bool:
-        if isinstance(value, (str, bytes)) or not hasattr(value, "__len__"):
+    if name in ("Sequence", "Iterable", "list", "tuple"):
+        if isinstance(value, (str, bytes)) or not np.iterable(value):
             return False
-        if isinstance(value, np.ndarray) and value.ndim == 0:
-            return False
-        return count in (None, len(value)) and all(map(fits, value))
-
-    return test
-
-
-def _is_text(value: object) -> bool:
-    return isinstance(value, str)
-
-
-def _is_path(value: object) -> bool:
-    return isinstance(value, (str, os.PathLike))
+        if not isinstance(value, Sized):  # looking into an iterator would exhaust it
+            return True
+        kinds = inner.split(", ") if name == "tuple" and inner else [inner] * len(value)
+        return len(value) == len(kinds) and all(map(_fits, value, kinds))
+    if name in ("dict", "Mapping"):
+        return hasattr(value, "keys") and all(isinstance(key, str) for key in value)
+    if name == "DataFrame":  # of pandas or polars, which needn't be there
+        return name in [base.__name__ for base in type(value).__mro__]
+    return isinstance(value, getattr(sys.modules.get("inverse_dynamics._core"), kind, object))
 
 
-def _are_paths(value: Any) -> bool:
-    """Whether these are paths. Doesn't look into an iterator, which that would exhaust."""
-    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
-        return False
-    return not hasattr(value, "__len__") or all(map(_is_path, value))
-
-
-# Type in a signature or an annotation, in words, and whether a value is of it. The first that matches counts.
-_KINDS: tuple[tuple[str, str, Callable[[Any], bool]], ...] = (
-    (r"None", "None", lambda value: value is None),
-    (r"bool", "True or False", lambda value: isinstance(value, (bool, np.bool_))),
-    (r"str|Clock", "a text", _is_text),
-    (
-        r"(pathlib\.)?Path|os\.PathLike\[str\]",
-        "a path",
-        lambda value: isinstance(value, os.PathLike),
-    ),
-    (r".*ArrayLike, numpy\.bool\].*", "an array of True and False", _is_mask),
-    (r".*(ArrayLike|NDArray|ndarray).*", "an array of real numbers", _is_array),
-    (r".*(Sequence|[Ll]ist)\[str\].*", "a list of texts", _are(_is_text)),
-    (r"Iterable\[Path \| str\]", "paths", _are_paths),
-    (
-        r".*(FixedSize\(3\)|tuple\[float, float, float\]).*",
-        "three numbers",
-        _are(_is_number, 3),
-    ),
-    (
-        r".*(dict|Mapping).*",
-        "a dictionary whose keys are texts",
-        lambda value: hasattr(value, "keys") and all(map(_is_text, value.keys())),
-    ),
-    (r"(typing\.)?SupportsInt|int", "a whole number", lambda value: hasattr(value, "__index__")),
-    (r"(typing\.)?SupportsFloat|float", "a number", _is_number),
-)
-
-
-def _expectation(annotation: str) -> tuple[str, Callable[[object], bool]]:
-    """A type in words, and a test of values, which all pass if the type isn't known here."""
-    kinds = [
-        _kind_of(alternative)
-        for alternative in _alternatives(ast.parse(annotation, mode="eval").body)
-        if not alternative.endswith("SupportsIndex")  # beside SupportsInt and SupportsFloat
-    ]
-    words = " or ".join(word for word, _ in kinds)
-    return words, lambda value: any(fits(value) for _, fits in kinds)
-
-
-def _alternatives(annotation: ast.expr) -> list[str]:
-    """Types of a union; of Optional[X], X and None."""
-    if isinstance(annotation, ast.BinOp):
-        return _alternatives(annotation.left) + _alternatives(annotation.right)
-    if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value).endswith("Optional"):
-        return [*_alternatives(annotation.slice), "None"]
-    return [ast.unparse(annotation)]
-
-
-def _kind_of(alternative: str) -> tuple[str, Callable[[Any], bool]]:
-    for pattern, word, fits in _KINDS:
-        if re.fullmatch(pattern, alternative):
-            return word, fits
-    name = alternative.rpartition(".")[2]
-    if "." not in alternative and name not in ("Robot", "DataFrame"):
-        return "a value", lambda _: True
-    return f"a {name}", lambda value: name in {base.__name__ for base in type(value).__mro__}
-
-
-def _kind(value: object, *, of: bool = False) -> str:
-    """A value in a few words; of: with the number of its entries."""
-    if of and isinstance(value, (list, tuple)):
-        return f"a {type(value).__name__} of {len(value)}"
-    if value is None or isinstance(value, (bool, int, float, str)):
-        return shown(value) if isinstance(value, str) else harmless(value)
+def _kind(value: object) -> str:
+    """A value in a few words."""
     if isinstance(value, np.ndarray):
-        return f"an array of {value.dtype} of shape {value.shape}"
+        return f"an array of {value.dtype} {value.shape}"
+    if value is None or isinstance(value, (bool, int, float, str, list, tuple, dict)):
+        return " ".join(short(value).split())
     return f"an object of type {type(value).__name__}"

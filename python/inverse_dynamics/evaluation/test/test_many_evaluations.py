@@ -280,7 +280,7 @@ def test_what_no_recording_can_be_evaluated_with_is_an_error_at_once(bags, tmp_p
         ArgumentError, match="evaluate_many: argument cutof: unknown; did you mean cut"
     ):
         evaluate_many(bags, "ur10_simulated", out, cutof=3.0)
-    with pytest.raises(ArgumentError, match="argument jobs: expected a whole number or None"):
+    with pytest.raises(ArgumentError, match="argument jobs: expected int"):
         evaluate_many(bags, "ur10_simulated", out, jobs="two")
     with pytest.raises(UserError, match="jobs: expected a number of processes above zero, got 0"):
         evaluate_many(bags, "ur10_simulated", out, jobs=0)
@@ -289,9 +289,7 @@ def test_what_no_recording_can_be_evaluated_with_is_an_error_at_once(bags, tmp_p
     with pytest.raises(UserError, match="robot 'ur11': expected one of"):
         evaluate_many(bags, "ur11", out)
     for wrong in (5, None, [5], b"monday"):
-        with pytest.raises(
-            ArgumentError, match="argument recordings: expected paths or a path or a t"
-        ):
+        with pytest.raises(ArgumentError, match="argument recordings: expected Iterable"):
             evaluate_many(wrong, "ur10_simulated", out)
     with pytest.raises(ArgumentError, match="evaluate_many: argument series: unknown"):
         evaluate_many(bags, "ur10_simulated", out, series=None)

@@ -70,7 +70,7 @@ def test_a_data_frame_is_a_recording(evaluation, arrays):
         (
             {5: 1},
             ArgumentError,
-            "evaluate: argument bag: expected a path or a text or a dictionary whose keys",
+            "evaluate: argument bag: expected Path | str | Mapping[str, Any] | DataFrame, got {",
         ),
     ],
 )

@@ -119,7 +119,7 @@ def test_too_few_samples_in_a_window_are_an_error_that_names_the_window(
 
 
 def test_what_is_no_time_is_an_error(bag):
-    with pytest.raises(ArgumentError, match="argument start: expected a number or None, got '1'"):
+    with pytest.raises(ArgumentError, match=r"argument start: expected float \| None, got '1'"):
         evaluate(bag, "ur10_simulated", start="1")
     with pytest.raises(BagError, match="--from .*: expected a time in s since .*, got nan"):
         evaluate(bag, "ur10_simulated", start=float("nan"))

@@ -282,9 +282,9 @@ def test_a_robot_is_a_value() -> None:
     [
         (
             {"gravity": (0, 9.81)},
-            "argument gravity: expected three numbers or None, got a tuple of",
+            r"argument gravity: expected tuple\[float, .* None, got \(0, 9.81\)",
         ),
-        ({"urdf": 3}, "argument urdf: expected a text or a path or None, got 3"),
+        ({"urdf": 3}, r"argument urdf: expected str \| PathLike\[str\] \| None, got 3"),
         ({"tpi": "tool0"}, "argument tpi: unknown; did you mean tip?"),
     ],
 )
