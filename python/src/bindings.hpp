@@ -21,6 +21,7 @@ void bindFastModel(pybind11::module_& module);
 void bindAccelerations(pybind11::module_& module);
 void bindRecordings(pybind11::module_& module);
 void bindYaml(pybind11::module_& module);
+void bindRobotDescription(pybind11::module_& module);
 void bindRunConfiguration(pybind11::module_& module);
 void bindEvaluator(pybind11::module_& module);
 void bindControl(pybind11::module_& module);

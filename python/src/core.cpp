@@ -15,6 +15,7 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindErrors();
   // classes before the functions whose signatures name them
   inverse_dynamics_tools::bindYaml(module);
+  inverse_dynamics_tools::bindRobotDescription(module);
   inverse_dynamics_tools::bindRecordings(module);
   inverse_dynamics_tools::bindEvaluator(module);
   inverse_dynamics_tools::bindRunConfiguration(module);

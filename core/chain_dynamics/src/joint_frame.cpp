@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "joint_frame.hpp"
+#include "chain_dynamics/joint_frame.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "chain_dynamics/located_yaml.hpp"
-#include "joint_frame.hpp"
+#include "chain_dynamics/joint_frame.hpp"
 #include "model_file_joint.hpp"
 #include "plausibility.hpp"
 

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "joint_frame.hpp"
+#include "chain_dynamics/joint_frame.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {

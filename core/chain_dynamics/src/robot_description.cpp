@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "chain_dynamics/joint_frame.hpp"
 #include "chain_dynamics/text.hpp"
-#include "joint_frame.hpp"
 #include "number.hpp"
 #include "urdf_element.hpp"
 #include "urdf_transmissions.hpp"
@@ -96,6 +96,14 @@ Transform<double> placement(const UrdfElement& parent) {
     }
   }
   return X;
+}
+
+/// Roll, pitch and yaw of an `<origin>`, whose rotation is R, as stated.
+Eigen::Vector3d anglesOf(const UrdfElement& joint, const Matrix3<double>& R) {
+  const auto origin = joint.child("origin");
+  if (origin && origin->has("rpy")) return origin->vector("rpy");
+  if (origin && origin->has("quat_xyzw")) return rollPitchYaw(R);
+  return Eigen::Vector3d::Zero();
 }
 
 Matrix3<double> momentOfInertia(const UrdfElement& inertia) {
@@ -263,6 +271,7 @@ class Reader {
       joint.line = element.line();
       joint.type = jointType(element);
       joint.placement = placement(element);
+      joint.rpy = anglesOf(element, joint.placement.R);
       joint.parent = linkAt(element, "parent");
       joint.child = linkAt(element, "child");
       if (isMovable(joint)) {

@@ -15,7 +15,7 @@
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
 #include "definite_inertia.hpp"
-#include "joint_frame.hpp"
+#include "chain_dynamics/joint_frame.hpp"
 #include "plausibility.hpp"
 
 namespace chain_dynamics {

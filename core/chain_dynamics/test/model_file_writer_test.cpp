@@ -12,7 +12,7 @@
 #include "chain_dynamics/friction.hpp"
 #include "chain_dynamics/urdf.hpp"
 #include "example_models.hpp"
-#include "joint_frame.hpp"
+#include "chain_dynamics/joint_frame.hpp"
 #include "model_file_texts.hpp"
 
 namespace chain_dynamics::model_file_writer_test {

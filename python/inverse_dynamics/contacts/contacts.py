@@ -35,9 +35,8 @@ from inverse_dynamics.evaluation.evaluation import (
     open_run,
     torques_with_gravity,
 )
-from inverse_dynamics.evaluation.run import RunOptions
+from inverse_dynamics.evaluation.run import RunOptions, of_run
 from inverse_dynamics.progress import no_progress
-from inverse_dynamics.robots.descriptions import effort_limits
 from inverse_dynamics.robots.model_errors import read_model_errors
 from inverse_dynamics.wording import counted, listed
 
@@ -125,6 +124,19 @@ class Contacts:
     notes: tuple[str, ...] = ()
 
 
+class ContactOptions(RunOptions, total=False):
+    """What is said about the estimator beside a recording.
+
+    gain: 1/s; none: gain_for() of the recording that thresholds are made of. tracking: rad/s, of velocities from
+    positions; none: recorded velocities. friction_band: N m, one number per joint, or one for all: what the friction
+    model may be wrong by beyond what the quiet part shows, whose thresholds are made without it.
+    """
+
+    gain: float | None
+    tracking: float | None
+    friction_band: Sequence[float]
+
+
 def find_contacts(
     bag: Path | str,
     robot: Robot | Path | str,
@@ -132,30 +144,20 @@ def find_contacts(
     quiet: tuple[float, float] | None = None,
     quiet_recording: Path | str | None = None,
     false_alarms: float = FALSE_ALARMS,
-    gain: float | None = None,
-    tracking: float | None = None,
-    friction_band: Sequence[float] = (),
     progress: Progress = no_progress,
-    **options: Unpack[RunOptions],
+    **options: Unpack[ContactOptions],
 ) -> Contacts:
     """Find the contacts of a recording.
 
     Parameters
     ----------
     bag, robot, **options
-        As evaluate() takes them.
+        As evaluate() takes them, and ContactOptions.
     quiet, quiet_recording
         From, to [s] of a part without contact; a recording without contact; both: that part of that recording;
         none: the errors that `ids identify` found on held-out data.
     false_alarms
         Per hour.
-    gain
-        1/s; none: gain_for() of the recording that thresholds are made of.
-    tracking
-        rad/s, of velocities from positions; none: recorded velocities.
-    friction_band
-        N m, one number per joint, or one for all: what the friction model may be wrong by beyond what the quiet part
-        shows, whose thresholds are made without it.
 
     Raises
     ------
@@ -167,12 +169,15 @@ def find_contacts(
             "--quiet (quiet=): expected two times in s since the first sample, the later one second, "
             f"got {quiet[0]:g},{quiet[1]:g}"
         )
-    evaluation = evaluate(bag, robot, progress=progress, **options)
+    gain, tracking = options.get("gain"), options.get("tracking")
+    evaluation = evaluate(bag, robot, progress=progress, **of_run(options))
     arm = evaluation.arm
     solver = arm.solver
     quiet_from, held_out = evaluation, None
     if quiet_recording is not None:
-        quiet_from = evaluate_run(open_run(quiet_recording, robot, progress=progress, **options))
+        quiet_from = evaluate_run(
+            open_run(quiet_recording, robot, progress=progress, **of_run(options))
+        )
     elif quiet is None:
         held_out = _held_out(evaluation.robot)
     if held_out and gain and gain > held_out.gain:
@@ -184,7 +189,8 @@ def find_contacts(
         gain = held_out.gain if held_out else gain_for(quiet_from.accelerations.cutoff)
     estimates = plain = _estimate(evaluation, solver, gain, tracking)
     # Thresholds contain the friction's error of the quiet part: no band there.
-    band = tuple(friction_band) * (len(solver.joint_names) if len(friction_band) == 1 else 1)
+    band = tuple(options.get("friction_band", ()))
+    band *= len(solver.joint_names) if len(band) == 1 else 1
     if band:
         estimates = _estimate(evaluation, solver, gain, tracking, band)
     of_quiet = plain
@@ -193,7 +199,7 @@ def find_contacts(
     quiet_torques = held_out or _quiet_part(of_quiet, quiet, gain)
     thresholds, raised_notes = _raised(quiet_torques, plain, solver, false_alarms)
     wrenches, unseen, wrench_notes = _wrenches(solver, estimates, thresholds)
-    limits = effort_limits(evaluation.robot.urdf, arm.description, arm.joint_names)
+    limits = arm.limit("effort", np.inf)
     blind = _blind(evaluation, thresholds, limits, quiet_torques.where)
     interruptions = _interruptions(estimates)
     found = Contacts(

@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics._core import FastModel
+from inverse_dynamics._core import FastModel, RobotDescription
 from inverse_dynamics.errors import RobotError, SolverError
-from inverse_dynamics.robots.chain_geometry import chain_geometry
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.robots.solvers import brings_own_model, open_solver
 
@@ -133,7 +132,7 @@ def _of_description(robot: Robot, description: str, own: Solver) -> Solver:
 
 def _with_description(model: ArmModel, robot: Robot, solver: Solver, description: str) -> ArmModel:
     """With limits and, where the solver computes from it, the links of a description."""
-    chain = chain_geometry(description, robot.root, solver.joint_names)
+    chain = RobotDescription(description).chain(solver.joint_names, robot.root)
     names = ("lower", "upper", "effort")
     limits = np.array([[joint.limits.get(name, np.inf) for joint in chain] for name in names])
     model = replace(model, position_limits=limits[:2], effort_limits=limits[2])
@@ -148,7 +147,7 @@ def _with_description(model: ArmModel, robot: Robot, solver: Solver, description
         columns = engine.regressor(q, qd, qdd).reshape(*q.shape, -1, 10)
         return np.concatenate([np.einsum("njkc,kc->knj", columns, p) for p in own])
 
-    link_names, mass = tuple(joint.link for joint in chain), float(own[1][:, 0].sum())
+    link_names, mass = tuple(joint.child for joint in chain), float(own[1][:, 0].sum())
     return replace(model, links=links, link_names=link_names, mass=mass)
 
 

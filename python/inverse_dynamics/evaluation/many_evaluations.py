@@ -18,13 +18,12 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.arguments import check_call, checked
-from inverse_dynamics.errors import ArgumentError, UserError
+from inverse_dynamics.arguments import checked
+from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation import files as evaluations
 from inverse_dynamics.evaluation.cluster import check_stopped, on_cluster
-from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.evaluation.files import PAGE
-from inverse_dynamics.evaluation.run import RunOptions, check_options, overridden
+from inverse_dynamics.evaluation.run import RunOptions, check_options, of_run, overridden
 from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
 from inverse_dynamics.evaluation.workers import Failure, cores, in_processes
 from inverse_dynamics.outputs.files import Contents, write_text, written_whole
@@ -108,6 +107,18 @@ class _Task:
     options: RunOptions
 
 
+class ManyOptions(RunOptions, total=False):
+    """What is written of each recording.
+
+    storage, figures: as in write_evaluation(). Without figures no page of a recording either, nor of one with more than
+    a million samples. parquet: write NAME/series.parquet too.
+    """
+
+    storage: Storage | None
+    figures: Sequence[str]
+    parquet: bool
+
+
 @checked
 def evaluate_many(
     recordings: Iterable[Path | str] | Path | str,
@@ -117,11 +128,8 @@ def evaluate_many(
     jobs: int | None = None,
     scheduler: str | None = None,
     overwrite: bool = False,
-    storage: Storage | None = None,
-    figures: Sequence[str] = ("png",),
-    parquet: bool = False,
     progress: Progress = no_progress,
-    **options: Unpack[RunOptions],
+    **options: Unpack[ManyOptions],
 ) -> ManyEvaluations:
     """Evaluate recordings of one robot, each in a process of its own, into one directory.
 
@@ -131,8 +139,8 @@ def evaluate_many(
     ----------
     recordings
         As evaluate() takes them, or directories that hold some.
-    robot, options
-        As in evaluate().
+    robot, **options
+        As in evaluate(), and ManyOptions.
     out
         The directory; written whole or not at all.
     jobs
@@ -140,11 +148,8 @@ def evaluate_many(
     scheduler
         Address of a Dask scheduler, whose workers do it instead. They need this software, and see
         recordings and `out` by the same paths.
-    overwrite, storage, figures
-        As in write_evaluation(). Without figures no page of a recording either, nor of one with more
-        than a million samples.
-    parquet
-        Write NAME/series.parquet too.
+    overwrite
+        Replace an older result.
 
     Raises
     ------
@@ -166,19 +171,17 @@ def evaluate_many(
         raise UserError("evaluate_many: recordings: expected one or more, got none")
     if jobs is not None and jobs < 1:
         raise UserError(f"jobs: expected a number of processes above zero, got {jobs}")
-    if "series" in options:
-        raise ArgumentError(
-            "evaluate_many: argument series: unknown; samples go into the directory"
-        )
-    check_call(evaluate, next(iter(names.values())), robot, **options)
     robot = robot if isinstance(robot, Robot) else load_robot(robot)
-    check_options(robot, options)
+    run = of_run(options)
+    check_options(robot, run)
+    storage, figures = options.get("storage"), tuple(options.get("figures", ("png",)))
+    parquet = options.get("parquet", False)
     evaluations.check_writing(storage, figures, parquet=parquet)
-    writing = {"storage": storage, "figures": tuple(figures)}
-    inputs = (*names.values(), *overridden(robot, options).files)
+    writing = {"storage": storage, "figures": figures}
+    inputs = (*names.values(), *overridden(robot, run).files)
     with written_whole(Path(out), overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
         tasks = [
-            _Task(name, bag, target / name, robot, parquet, writing, options)
+            _Task(name, bag, target / name, robot, parquet, writing, run)
             for name, bag in names.items()
         ]
         outcomes = _outcomes(tasks, jobs, scheduler, progress)

@@ -13,9 +13,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from inverse_dynamics._core import RobotDescription
 from inverse_dynamics.recordings.log_format import LogFormat
 from inverse_dynamics.recordings.recordings import position_ranges
-from inverse_dynamics.robots.descriptions import carried_joints
 from inverse_dynamics.robots.solvers import brings_own_model
 from inverse_dynamics.wording import listed
 
@@ -67,7 +67,7 @@ def posture_of(
     """
     if not description or robot.model is not None or robot.parameters.get("attached") == "ignore":
         return Posture()
-    units = carried_joints(description, joint_names, robot.root)
+    units = carried_joints(RobotDescription(description), joint_names, robot.root)
     if not units or brings_own_model(robot):
         return Posture()
     turning = [joint for joint, unit in units.items() if unit == "rad"]
@@ -92,6 +92,25 @@ def posture_of(
         elif abs(position - mean) > _STILL[unit]:
             others.append(f"{joint} at {mean:.4g} {unit}, locked_joints at {position:.4g} {unit}")
     return Posture(held, tuple(_notes(told, moving, others)), bool(moving))
+
+
+def carried_joints(robot: RobotDescription, chain: Sequence[str], root: str = "") -> dict[str, str]:
+    """Units (rad, m) of the joints that move by themselves beside a chain, on a link that it moves.
+
+    chain: names of its joints; root: the link it starts at; none: the description's.
+    """
+    others = [joint for joint in robot.joints if joint.name not in chain]
+    still = [root or robot.root]
+    for link in still:  # grows by what is connected to the root without a joint of the chain
+        near = [ends for j in others if link in (ends := (j.parent, j.child))]
+        still += [end for ends in near for end in ends if end not in still]
+    return {
+        joint.name: "m" if joint.type == "prismatic" else "rad"
+        for joint in others
+        if joint.type in ("revolute", "continuous", "prismatic")
+        and not joint.mimics
+        and joint.parent not in still
+    }
 
 
 def _notes(told: list[str], moving: list[str], others: list[str]) -> list[str]:

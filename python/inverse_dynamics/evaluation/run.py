@@ -107,6 +107,11 @@ def overridden(robot: Robot | Path | str, options: RunOptions) -> Robot:
     return with_changes(robot if isinstance(robot, Robot) else load_robot(robot), **given)
 
 
+def of_run(options: Mapping[str, Any]) -> RunOptions:
+    """Those of open_run() among options of which it has some."""
+    return cast("RunOptions", {k: v for k, v in options.items() if k in RunOptions.__annotations__})
+
+
 def of_recording(options: RunOptions) -> RunOptions:
     """Those that say something about a recording, not about the robot."""
     kept = {k: v for k, v in options.items() if k == "topic" or k not in Overrides.__annotations__}

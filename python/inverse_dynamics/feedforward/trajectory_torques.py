@@ -28,7 +28,6 @@ from inverse_dynamics.recordings.tables import open_table
 from inverse_dynamics.recordings.times import check_seconds
 from inverse_dynamics.recordings.vocabulary import ACCELERATION, POSITION, VELOCITY
 from inverse_dynamics.robots.arm import Arm
-from inverse_dynamics.robots.descriptions import effort_limits
 from inverse_dynamics.robots.robots import Robot, load_robot
 from inverse_dynamics.wording import counted
 
@@ -153,7 +152,7 @@ def trajectory_torques(
         robot=robot,
         joint_names=joints,
         units=arm.units,
-        limits=effort_limits(robot.urdf, arm.description, solver.joint_names),
+        limits=arm.limit("effort", np.inf),
         times=tuple(time for time, _ in states),
         torques=tuple(torques),
         energy=MotionEnergy.together(

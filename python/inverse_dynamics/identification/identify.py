@@ -59,8 +59,7 @@ from inverse_dynamics.identification.uncertainty import (
     with_levels,
 )
 from inverse_dynamics.progress import no_progress
-from inverse_dynamics.robots.chain_geometry import chain_geometry
-from inverse_dynamics.robots.descriptions import effort_limits, read_description
+from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot
 
 if TYPE_CHECKING:
@@ -68,7 +67,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Unpack
 
-    from inverse_dynamics._core import ArmFitter, FastModel, Solver
+    from inverse_dynamics._core import ArmFitter, DescribedJoint, FastModel, Solver
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.evaluation.bands import TorqueBand
     from inverse_dynamics.evaluation.evaluation import Evaluation
@@ -178,18 +177,17 @@ def identify(
     described = _core.FastModel.from_urdf(
         description, root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
-    limits = effort_limits(robot.urdf, description, fitter.joint_names)
+    chain = _core.RobotDescription(description).chain(fitter.joint_names, robot.root)
     by_day = len(evaluations) > 1 and blocks is None
-    level = limits if by_day else None
+    level = _effort_limits(chain) if by_day else None
     held_out = _held_out(fitter, described, level, baselines(robot, description), groups, progress)
     chosen = choose(fitter, cut)
     found = _result(
-        description,
         described,
         evaluations,
         fitter,
         cut,
-        limits=limits,
+        chain,
         held_out=held_out,
         chosen=chosen,
         by_day=by_day,
@@ -330,22 +328,25 @@ def _computed(solver: Solver, block: Block) -> Computed:
     return q, qd, solver.torques(q, qd, qdd), measured
 
 
+def _effort_limits(chain: Sequence[DescribedJoint]) -> Floats:
+    """(n,) N m (prismatic N); infinite where none is stated."""
+    return np.array([joint.limits.get("effort", np.inf) for joint in chain])
+
+
 def _result(
-    description: str,
     described: FastModel,
     evaluations: Sequence[Evaluation],
     fitter: ArmFitter,
     cut: Sequence[Block],
+    chain: Sequence[DescribedJoint],
     *,
-    limits: Floats,
     held_out: Sequence[HeldOutBlock],
     chosen: Chosen,
     by_day: bool,
 ) -> Identification:
     first, fit = evaluations[0], chosen.fit
     robot = first.robot
-    chain = chain_geometry(description, robot.root, fitter.joint_names)
-    links = tuple(joint.link for joint in chain)
+    links = tuple(joint.child for joint in chain)
     later = [block.later(chosen.delay) for block in moving(cut)]
     errors = [errors_of(fitter, fit, block) for block in later]
     independent = independent_samples(errors)
@@ -397,7 +398,7 @@ def _result(
         intervals=intervals(known, described, first.units),
         prior_decided=prior_decided(known, fitter.prior, links),
         factor=factor,
-        band=with_levels(band_of(chosen, factor, cut, limits), levels),
+        band=with_levels(band_of(chosen, factor, cut, _effort_limits(chain)), levels),
         levels=levels,
         findings=(
             *gravity,

@@ -18,19 +18,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics._core import RobotDescription
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.identification.result import identified_model, urdf_of
 from inverse_dynamics.outputs.yaml_text import yaml_number
-from inverse_dynamics.robots.chain_geometry import chain_geometry
 from inverse_dynamics.robots.descriptions import parse_description, read_description
 from inverse_dynamics.robots.link_parameters import about_center, inertial_elements, turned
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from inverse_dynamics._core import DescribedJoint
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.result import Identification
-    from inverse_dynamics.robots.chain_geometry import JointGeometry
 
 _STATES = 2000  # of the recordings, over which the nearest friction is found
 _RAMP = 1.25  # widths of tanh(v / width), over which the nearest ramp rises
@@ -42,12 +42,12 @@ def urdf_text(found: Identification) -> str:
     parse_description(text)  # refuses what isn't a URDF
     before, body, after = _around_root(text)
     robot = _parsed(body)
-    geometry = chain_geometry(text, found.robot.root, found.joints)
-    lumped = _lumped_links(robot, found.joints, [joint.link for joint in geometry])
+    geometry = RobotDescription(text).chain(found.joints, found.robot.root)
+    lumped = _lumped_links(robot, found.joints, [joint.child for joint in geometry])
     for joint, parameters in zip(geometry, found.model.parameters, strict=True):
         in_link = turned(parameters, joint.rotation_from_z)
-        _set_inertial(_named(robot, "link", joint.link), in_link)
-        for link in lumped[joint.link]:
+        _set_inertial(_named(robot, "link", joint.child), in_link)
+        for link in lumped[joint.child]:
             _remove_inertial(_named(robot, "link", link))
     fitted = _damping_and_friction(found, np.zeros(len(found.joints)))
     for name, (damping, friction) in zip(found.joints, fitted, strict=True):
@@ -64,7 +64,8 @@ def mjcf_text(found: Identification) -> str:
     """
     ramps = np.array([_RAMP * law["width"] for law in found.model.friction])
     H = identified_model(found).inertia_matrix(np.zeros(len(found.joints)))
-    geometry = chain_geometry(read_description(urdf_of(found)), found.robot.root, found.joints)
+    description = RobotDescription(read_description(urdf_of(found)))
+    geometry = description.chain(found.joints, found.robot.root)
     mujoco = ElementTree.Element("mujoco", model=found.robot.name)
     mujoco.append(ElementTree.Comment(f" {_comment(found, {})} "))
     ElementTree.SubElement(mujoco, "compiler", angle="radian", eulerseq="XYZ")
@@ -98,11 +99,11 @@ def mjcf_text(found: Identification) -> str:
 
 
 def _mjcf_body(
-    parent: ElementTree.Element, joint: JointGeometry, parameters: Floats
+    parent: ElementTree.Element, joint: DescribedJoint, parameters: Floats
 ) -> ElementTree.Element:
     """The link that a joint moves."""
     body = ElementTree.SubElement(
-        parent, "body", name=joint.link, pos=_numbers(joint.xyz), euler=_numbers(joint.rpy)
+        parent, "body", name=joint.child, pos=_numbers(joint.xyz), euler=_numbers(joint.rpy)
     )
     center, tensor = about_center(parameters)
     six = tensor[(0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)]

@@ -17,7 +17,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics._core import PayloadEstimator, PayloadOptions, PayloadStatus, residual_noise
+from inverse_dynamics._core import (
+    PayloadEstimator,
+    PayloadOptions,
+    PayloadStatus,
+    RobotDescription,
+    residual_noise,
+)
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import (
     CAUSE,
@@ -28,7 +34,7 @@ from inverse_dynamics.evaluation.evaluation import (
 from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.identification.uncertainty import read_uncertainty
 from inverse_dynamics.progress import no_progress
-from inverse_dynamics.robots.descriptions import tip_link
+from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.robots.solvers import brings_own_model, solver_of
 from inverse_dynamics.wording import listed
@@ -106,7 +112,10 @@ class Payload(Fit):
         robot = self.evaluation.robot
         if brings_own_model(robot) or robot.model is not None:
             return f"`tip` of the model {robot.plugin if robot.model is None else robot.model.name}"
-        return f"link {robot.tip or tip_link(robot.urdf, self.joint_names)}"
+        if robot.tip or robot.urdf is None:
+            return f"link {robot.tip}"
+        tip = RobotDescription(read_description(robot.urdf)).tip(self.joint_names[-1])
+        return f"link {tip}"
 
     @property
     def center_of_mass(self) -> Floats:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike
+    from typing_extensions import Unpack
 
     from inverse_dynamics._core import Solver, TimedPath
     from inverse_dynamics.arrays import Floats, Integers
@@ -123,18 +124,28 @@ class Retimed:
         return retime_figure(self)
 
 
+class PathShape(TypedDict, total=False):
+    """How waypoints become a path.
+
+    topic: of a recording. deviation: straight lines whose corners the path passes by at most this distance [rad]; by
+    default a cubic spline through all waypoints. stops: numbers of waypoints, from 0, to stand still at.
+    """
+
+    topic: str
+    deviation: float | None
+    stops: Sequence[int]
+
+
 @checked
 def retime(
     path: JointPath | Path | str | ArrayLike,
     robot: Robot | Path | str,
     limits: MotionLimits | None = None,
     *,
-    topic: str = "",
-    deviation: float | None = None,
-    stops: Sequence[int] = (),
     options: RetimeOptions | None = None,
     weight: float = 0.0,
     rate: float = 250.0,
+    **shape: Unpack[PathShape],
 ) -> Retimed:
     """Time a path so that it takes as little as the limits allow.
 
@@ -143,20 +154,17 @@ def retime(
     path
         Waypoints (m, n) [rad]; a file of them: trajectory_msgs/JointTrajectory of a recording, a table, or a
         YAML file with `joints` and `positions`, times ignored; or a JointPath. A continuous joint turns as
-        far as the numbers say; in a table recorded within one turn, steps over the seam are short.
+        far as the numbers say; in a table recorded within one turn, wrap-around is undone.
     robot
         As evaluate() takes it.
     limits
         Torques and velocities that aren't among them are those of the robot description.
-    deviation
-        Straight lines whose corners the path passes by at most this distance [rad]; by default a cubic
-        spline through all waypoints.
-    stops
-        Numbers of waypoints, from 0, to stand still at.
     weight
         s/J. Above 0 the motion is slower and minimises about duration + weight * energy.
     rate
         Of the samples, Hz.
+    **shape
+        How waypoints become a path: PathShape.
 
     Raises
     ------
@@ -182,15 +190,8 @@ def retime(
     limits = described_limits(arm, robot, limits)
     notes = [*arm.solver.warnings, *_notes_of_velocities(arm, limits)]
     if not isinstance(path, JointPath):
-        waypoints = waypoints_of(path, robot, arm, topic)
-        if isinstance(path, Path | str) and is_csv(Path(path)):
-            waypoints, seams = _unwrapped(waypoints, arm)
-            notes += seams
-        path = (
-            JointPath.spline(waypoints, list(stops))
-            if deviation is None
-            else JointPath.lines(waypoints, deviation, list(stops))
-        )
+        path, seams = _joint_path(path, robot, arm, **shape)
+        notes += seams
     _check_positions(path, arm, robot)
     fastest = retime_path(arm.solver, path, limits, options)
     acceleration, by_acceleration = _by_acceleration(arm.solver, fastest, limits, options)
@@ -284,6 +285,20 @@ def _check_positions(path: JointPath, arm: Arm, robot: Robot) -> None:
                 f"{robot.urdf or robot.model}, got {least:.4g} to {most:.4g}; change the path, and if waypoints are in "
                 "degrees, convert them (of a table: --scale q=deg)"
             )
+
+
+def _joint_path(
+    source: Path | str | ArrayLike, robot: Robot, arm: Arm, **shape: Unpack[PathShape]
+) -> tuple[JointPath, list[str]]:
+    """The path, and notes."""
+    waypoints = waypoints_of(source, robot, arm, shape.get("topic", ""))
+    notes: list[str] = []
+    if isinstance(source, Path | str) and is_csv(Path(source)):
+        waypoints, notes = _unwrapped(waypoints, arm)
+    stops, deviation = list(shape.get("stops", ())), shape.get("deviation")
+    if deviation is None:
+        return JointPath.spline(waypoints, stops), notes
+    return JointPath.lines(waypoints, deviation, stops), notes
 
 
 def waypoints_of(path: Path | str | ArrayLike, robot: Robot, arm: Arm, topic: str) -> Floats:

@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.robots.chain_geometry import chain_geometry, model_limits
+from inverse_dynamics._core import RobotDescription
+from inverse_dynamics.errors import RobotError
 from inverse_dynamics.robots.descriptions import parse_description, read_description
+from inverse_dynamics.robots.located_yaml import read_mapping
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot
 from inverse_dynamics.robots.solvers import open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
     from inverse_dynamics._core import Solver
     from inverse_dynamics.arrays import Floats
@@ -45,10 +48,10 @@ class Arm:
         robot = self.robot
         limits: Sequence[Mapping[str, float]] = [{}] * len(self.joint_names)
         if self.description:
-            chain = chain_geometry(self.description, robot.root, self.joint_names)
+            chain = RobotDescription(self.description).chain(self.joint_names, robot.root)
             limits = [joint.limits for joint in chain]
         elif robot.model is not None:
-            limits = model_limits(robot.model)
+            limits = _model_limits(robot.model)
         return np.array([of_joint.get(name, absent) for of_joint in limits])
 
     @cached_property
@@ -61,3 +64,16 @@ class Arm:
         if robot.model is None or robot.urdf is None or robot.plugin != RIGID_BODY:
             return self.solver
         return open_solver(replace(robot, model=None, friction=False), self.description)
+
+
+def _model_limits(file: Path) -> list[dict[str, float]]:
+    """Stated limits of the joints of a model file, which a solver has read."""
+    joints = read_mapping(file, RobotError).required("joints").entries()
+    stated = [joint.mapping().optional("limits") for joint in joints]
+    names = ("lower", "upper", "velocity", "effort")
+    return [
+        {name: one.number() for name in names if (one := limits.mapping().optional(name))}
+        if limits
+        else {}
+        for limits in stated
+    ]

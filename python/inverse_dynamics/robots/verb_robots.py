@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -143,7 +144,6 @@ def _rubs(arm: Arm) -> bool:
 def _checked(robot: Robot) -> tuple[Arm, list[str]]:
     """The arm, checked as far as possible without a recording, and warnings. Raises UserError."""
     from inverse_dynamics.robots.arm import Arm
-    from inverse_dynamics.robots.descriptions import effort_limits, read_description
     from inverse_dynamics.simulation.configuration import StatedSimulation
     from inverse_dynamics.wording import did_you_mean
 
@@ -157,7 +157,6 @@ def _checked(robot: Robot) -> tuple[Arm, list[str]]:
                 + (hint and f"; {hint}")
             )
     if robot.urdf is not None:
-        description = read_description(robot.urdf)
-        effort_limits(robot.urdf, description, arm.joint_names)
+        arm.limit("effort", math.inf)  # refuses what isn't a number
         StatedSimulation.of(robot, arm.joint_names)
     return arm, notes

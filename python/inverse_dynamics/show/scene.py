@@ -21,18 +21,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inverse_dynamics._core import DescribedJoint, RobotDescription
+from inverse_dynamics.decimals import decimal
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.installation.extras import MissingPackageError
-from inverse_dynamics.robots.chain_geometry import origin_pose
-from inverse_dynamics.robots.descriptions import (
-    link_of,
-    numbers_of,
-    numbers_or,
-    parse_description,
-    read_description,
-)
+from inverse_dynamics.robots.descriptions import parse_description, read_description
 from inverse_dynamics.show.meshes import MeshError, MeshPart, find_mesh, read_mesh
-from inverse_dynamics.wording import counted, harmless
+from inverse_dynamics.wording import counted, harmless, shown
 
 Matrix = NDArray[np.float64]
 DEFAULT_COLOR = (0.72, 0.75, 0.79)
@@ -65,27 +60,20 @@ def read_scene(file: Path, joints: Sequence[str]) -> Scene:
 
 def scene_of(urdf: str, joints: Sequence[str], directory: Path) -> Scene:
     """The scene of a URDF's text; names of meshes are relative to the directory."""
-    robot = parse_description(urdf)
-    reader = _Shapes(robot, directory)
-    by_parent: dict[str, list[ElementTree.Element]] = {}
-    children = set()
-    for joint in robot.findall("joint"):
-        by_parent.setdefault(link_of(joint, "parent"), []).append(joint)
-        children.add(link_of(joint, "child"))
+    robot = RobotDescription(urdf)
+    reader = _Shapes(parse_description(urdf), directory)
+    by_parent: dict[str, list[DescribedJoint]] = {}
+    for joint in robot.joints:
+        by_parent.setdefault(joint.parent, []).append(joint)
     index = {name: i for i, name in enumerate(joints)}
     links: list[dict[str, Any]] = []
     bare: list[bool] = []  # of each link: whether something of it isn't drawn
-    waiting: list[tuple[str, int, ElementTree.Element | None]] = [
-        (name, -1, None) for name in reader.by_link if name not in children
-    ]
-    while waiting:
-        name, parent, above = waiting.pop(0)
-        if len(links) > len(reader.by_link):
-            raise RobotError("robot description: expected a tree, got a link below two joints")
-        links.append(_link(parent, above, index, reader.by_link.get(name, [])))
+    waiting: list[tuple[str, int, DescribedJoint | None]] = [(robot.root, -1, None)]
+    for name, parent, above in waiting:  # grows
+        links.append(_link(parent, above, index, reader.by_link[name]))
         bare.append(name in reader.missing)
         here = len(links) - 1
-        waiting.extend((link_of(child, "child"), here, child) for child in by_parent.get(name, []))
+        waiting += [(child.child, here, child) for child in by_parent.get(name, [])]
     if not any(link["shapes"] for link in links):
         bare = [True] * len(links)
     _add_skeleton(links, bare)
@@ -151,19 +139,17 @@ def base64_of(array: NDArray[Any], dtype: str) -> str:
 
 def _link(
     parent: int,
-    joint: ElementTree.Element | None,
+    joint: DescribedJoint | None,
     index: dict[str, int],
     shapes: list[dict[str, Any]],
 ) -> dict[str, Any]:
     link = {"parent": parent, "joint": -1, "kind": "fixed", "axis": [0.0, 0.0, 1.0]}
     pose = np.eye(4)
     if joint is not None:
-        axis = numbers_or(joint.find("axis"), "xyz", (1.0, 0.0, 0.0))
-        length = math.hypot(*axis) or 1.0
-        link["joint"] = index.get(joint.get("name", ""), -1)
-        link["kind"] = joint.get("type", "fixed")
-        link["axis"] = [component / length for component in axis]
-        pose = origin_pose(joint)
+        link["joint"] = index.get(joint.name, -1)
+        link["kind"] = joint.type
+        link["axis"] = joint.axis.tolist()
+        pose = joint.pose
     return {**link, "pose": _columns(pose), "shapes": shapes}
 
 
@@ -199,7 +185,7 @@ class _Shapes:
         geometry = visual.find("geometry")
         if geometry is None or len(geometry) == 0:
             return []
-        element, pose, color = geometry[0], origin_pose(visual), self._color_of(visual)
+        element, pose, color = geometry[0], _pose(visual.find("origin")), self._color_of(visual)
         if element.tag == "mesh":
             try:
                 return self._meshes(element, pose, color)
@@ -210,7 +196,7 @@ class _Shapes:
         size = [
             number
             for key, count in _SIZES[element.tag].items()
-            for number in numbers_of(element, key, count)
+            for number in _numbers(element, key, count)
         ]
         shape = {"kind": element.tag, "size": size}
         return [{**shape, "pose": _columns(pose), "color": color or list(DEFAULT_COLOR)}]
@@ -218,7 +204,7 @@ class _Shapes:
     def _meshes(
         self, element: ElementTree.Element, pose: Matrix, color: list[float] | None
     ) -> list[dict[str, Any]]:
-        scale = np.array(numbers_or(element, "scale", (1.0, 1.0, 1.0)))
+        scale = np.array(_numbers_or(element, "scale", (1.0, 1.0, 1.0)))
         if self._mesh_count > MOST_MESHES:
             raise MeshError(f"expected at most {MOST_MESHES} meshes, got {self._mesh_count}")
         file = find_mesh(element.get("filename", ""), self._directory)
@@ -251,8 +237,48 @@ _SIZES = {
 
 def _color(material: ElementTree.Element) -> list[float] | None:
     element = material.find("color")
-    return None if element is None else numbers_or(element, "rgba", (*DEFAULT_COLOR, 1.0))[:3]
+    return None if element is None else _numbers_or(element, "rgba", (*DEFAULT_COLOR, 1.0))[:3]
 
 
 def _columns(pose: Matrix) -> list[float]:
     return [round(float(value), 9) for value in pose.T.ravel()]
+
+
+def _numbers(element: ElementTree.Element, attribute: str, length: int) -> list[float]:
+    """Finite numbers of an attribute that is there."""
+    text = element.get(attribute, "")
+    try:
+        numbers = [decimal(word) for word in text.split()]
+    except ValueError:
+        numbers = []
+    if len(numbers) != length or not all(map(math.isfinite, numbers)):
+        what = "a finite number" if length == 1 else f"{length} finite numbers"
+        raise RobotError(
+            f"robot description: <{element.tag} {attribute}=...>: expected {what}, got {shown(text)}"
+        )
+    return numbers
+
+
+def _numbers_or(
+    element: ElementTree.Element | None, attribute: str, absent: Sequence[float]
+) -> list[float]:
+    """Finite numbers of an attribute, as many as `absent`, which stands for one that isn't there."""
+    if element is None or element.get(attribute) is None:
+        return list(absent)
+    return _numbers(element, attribute, len(absent))
+
+
+def _pose(origin: ElementTree.Element | None) -> Matrix:
+    """(4, 4) of an <origin>: R = RotZ(yaw) RotY(pitch) RotX(roll)."""
+    pose = np.eye(4)
+    pose[:3, 3] = _numbers_or(origin, "xyz", (0.0, 0.0, 0.0))
+    rpy = _numbers_or(origin, "rpy", (0.0, 0.0, 0.0))
+    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy), np.sin(rpy)
+    pose[:3, :3] = np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+    return pose

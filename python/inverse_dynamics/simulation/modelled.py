@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
-from inverse_dynamics._core import FastModel, Solver
+from inverse_dynamics._core import FastModel, RobotDescription, Solver
 from inverse_dynamics.decimals import decimal
-from inverse_dynamics.robots.chain_geometry import chain_geometry
 from inverse_dynamics.robots.descriptions import parse_description, read_description
 from inverse_dynamics.robots.link_parameters import inertial_elements, pseudo_inertia, turned
 from inverse_dynamics.robots.solvers import open_solver
@@ -31,6 +30,8 @@ from inverse_dynamics.simulation.model import (
 from inverse_dynamics.simulation.urdf import chain_from_urdf
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.robots.robots import Robot
     from inverse_dynamics.simulation.model import Gravity, Payload
@@ -75,17 +76,31 @@ def description_of(robot: Robot) -> str:
     return read_description(robot.urdf)
 
 
+class PlantOptions(TypedDict, total=False):
+    """What is simulated, beyond the robot's run configuration.
+
+    gravity: m/s^2, in the frame of the root link; None: the run configuration's. payload: at the tip.
+    joint_friction: the friction itself; a number: Coulomb friction that part of each joint's effort limit, and as much
+    viscous friction at its velocity limit; "urdf": what <dynamics> says; "model": that of the run configuration's
+    solver; None: none, or the model's with `from_model`. from_model: links and rotor inertias are those of the run
+    configuration's model, not of the description.
+    """
+
+    gravity: Gravity | None
+    payload: Payload | None
+    joint_friction: Friction | float | str | None
+    from_model: bool
+
+
 def simulated_robot(
     robot: Robot,
     description: str,
-    *,
-    gravity: Gravity | None = None,
-    payload: Payload | None = None,
-    joint_friction: Friction | float | str | None = None,
-    from_model: bool = False,
+    **plant: Unpack[PlantOptions],
 ) -> SimulatedRobot:
-    """The robot of a run configuration; options are those of simulate(). Errors name the description's file."""
-    gravity = gravity or robot.gravity or GRAVITY
+    """The robot of a run configuration. Errors name the description's file."""
+    gravity = plant.get("gravity") or robot.gravity or GRAVITY
+    payload, joint_friction = plant.get("payload"), plant.get("joint_friction")
+    from_model = plant.get("from_model", False)
     try:
         chain = chain_from_urdf(description, robot.root, robot.tip)
         solver = None
@@ -168,10 +183,10 @@ def modelled_description(robot: Robot, chain: UrdfChain, description: str) -> tu
             f"{robot.model}: expected the joints of the description ({', '.join(chain.joint_names)}), got "
             f"{', '.join(engine.joint_names)}"
         )
-    geometry = chain_geometry(description, chain.root, chain.joint_names)
+    geometry = RobotDescription(description).chain(chain.joint_names, chain.root)
     inertials = {
-        joint.link: _inertial(
-            turned(parameters, joint.rotation_from_z), f"{robot.model}: link {joint.link}"
+        joint.child: _inertial(
+            turned(parameters, joint.rotation_from_z), f"{robot.model}: link {joint.child}"
         )
         for joint, parameters in zip(geometry, engine.parameters.reshape(-1, 10), strict=True)
     }

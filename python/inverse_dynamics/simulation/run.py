@@ -18,7 +18,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -32,7 +32,12 @@ from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.controller import default_gains
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
-from inverse_dynamics.simulation.modelled import ModelFriction, description_of, simulated_robot
+from inverse_dynamics.simulation.modelled import (
+    ModelFriction,
+    PlantOptions,
+    description_of,
+    simulated_robot,
+)
 from inverse_dynamics.simulation.physics import (
     Motion,
     check_followed,
@@ -51,13 +56,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     import mujoco
+    from typing_extensions import Unpack
 
     from inverse_dynamics._core import Solver
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Storage
     from inverse_dynamics.robots.robots import Robot
-    from inverse_dynamics.simulation.model import Friction, Gravity, Payload, SimulatedRobot
+    from inverse_dynamics.simulation.model import Friction, SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
     from inverse_dynamics.simulation.urdf import UrdfChain
 else:
@@ -96,55 +102,51 @@ class SimulatedRun:
         return np.asarray(np.abs(computed - (motion.effort - motion.friction)).max(axis=0))
 
 
+class SimulationOptions(PlantOptions, total=False):
+    """What is simulated, and how it is recorded.
+
+    rate: of controller and recording, 125, 500 or 1000 Hz. duration: s; None: once through the trajectory. A periodic
+    one repeats until then. seed: of the search, of the sensors' random numbers, and of where in its period the run
+    configuration's trajectory begins if it is a periodic one; 0: at its beginning. table: whether the plane z = 0 of
+    the root link must not be touched.
+    """
+
+    rate: int | None
+    duration: float | None
+    seed: int
+    sensors: Sensors | None
+    table: bool
+
+
 def simulate(
     robot: Robot,
     *,
     trajectory: Path | Trajectory | None = None,
     optimise: bool = False,
-    rate: int | None = None,
-    duration: float | None = None,
-    seed: int = 0,
-    sensors: Sensors | None = None,
-    payload: Payload | None = None,
-    joint_friction: Friction | float | str | None = None,
-    from_model: bool = False,
-    gravity: Gravity | None = None,
-    table: bool = True,
     say: Callable[[str], None] = lambda text: None,
     progress: Progress = no_progress,
+    **options: Unpack[SimulationOptions],
 ) -> SimulatedRun:
     """Simulates a robot under a joint trajectory controller, and records its joint states.
 
     trajectory: a file or an object; None: the run configuration's; without one, or with `optimise`, a new exciting
         trajectory is searched for, which takes about a minute.
-    rate: of controller and recording, 125, 500 or 1000 Hz.
-    duration: s; None: once through the trajectory. A periodic one repeats until then.
-    seed: of the search, of the sensors' random numbers, and of where in its period the run configuration's
-        trajectory begins if it is a periodic one; 0: at its beginning.
-    joint_friction: the friction itself; a number: Coulomb friction that part of each joint's effort limit, and as much
-        viscous friction at its velocity limit; "urdf": what <dynamics> says; "model": that of the run configuration's
-        solver; None: none, or the model's with `from_model`.
-    from_model: links and rotor inertias are those of the run configuration's model, not of the description.
-    gravity: m/s^2, in the frame of the root link; None: the run configuration's.
-    table: whether the plane z = 0 of the root link must not be touched.
     say: called with a sentence before each slow step.
+    options: of the plant and of the recording, see SimulationOptions.
 
     Raises UserError: SimulationError, TrajectoryError, RobotError.
     """
     description = description_of(robot)
-    simulated = simulated_robot(
-        robot,
-        description,
-        gravity=gravity,
-        payload=payload,
-        joint_friction=joint_friction,
-        from_model=from_model,
+    plant = cast(
+        "PlantOptions", {k: v for k, v in options.items() if k in PlantOptions.__annotations__}
     )
+    simulated = simulated_robot(robot, description, **plant)
+    seed, table = options.get("seed", 0), options.get("table", True)
     chain = simulated.chain
     stated = StatedSimulation.of(robot, chain.joint_names)
-    rate = stated.rate if rate is None else rate
+    rate = stated.rate if (given := options.get("rate")) is None else given
     check_rate(rate)
-    sensors = sensors or Sensors()
+    sensors = options.get("sensors") or Sensors()
     sensors.check(len(chain.joint_names), rate)
     if optimise and trajectory is not None:
         raise SimulationError(
@@ -165,12 +167,12 @@ def simulate(
     notes = [*chain.notes, *checker.notes, *_unused(robot)]
     if seed and trajectory is not None and not sensors.are_random:
         notes.append("the seed has no effect: the trajectory is given, and nothing is random")
-    duration = duration or chosen.duration
+    duration = options.get("duration") or chosen.duration
     gains = stated.with_gains(default_gains(simulated, chosen, rate))
     motion = follow(simulated, chosen, rate=rate, duration=duration, gains=gains, progress=progress)
     check_followed(motion, simulated)
     recorded = sensors.record(motion, seed)
-    links = robot.model if from_model else robot.urdf
+    links = robot.model if options.get("from_model") else robot.urdf
     settings = {
         "robot": robot.name,
         "joints": list(chain.joint_names),
@@ -181,7 +183,7 @@ def simulate(
         "duration": float(duration),
         "seed": seed,
         "trajectory": source,
-        "payload": _plain(payload),
+        "payload": _plain(options.get("payload")),
         "links": links.name if links else None,
         "joint_friction": _friction_settings(robot, simulated.friction),
         **_plain(sensors),

@@ -16,10 +16,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics._core import FastModel
+from inverse_dynamics._core import FastModel, RobotDescription
 from inverse_dynamics.errors import RobotError, SolverError
-from inverse_dynamics.robots.chain_geometry import chain_geometry
-from inverse_dynamics.robots.descriptions import numbers_or, parse_description, root_link, tip_of
+from inverse_dynamics.robots.descriptions import parse_description
 from inverse_dynamics.simulation.errors import SimulationError
 
 if TYPE_CHECKING:
@@ -56,32 +55,28 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
     robot = parse_description(text, raised=SimulationError)
     try:
         names = FastModel.from_urdf(text, root=root, tip=tip).joint_names
-        joints = chain_geometry(text, root, names)
+        described = RobotDescription(text)
+        joints = described.chain(names, root)
     except (SolverError, RobotError) as error:
         reason = str(error).removeprefix("robot description: ")
         reason = reason.removesuffix(", or set allow_massless to true")  # MuJoCo can't
         raise SimulationError(f"robot description: {reason}") from error
-    dynamics = {joint.get("name"): joint.find("dynamics") for joint in robot.findall("joint")}
 
     def limits(name: str, absent: float) -> Floats:
         return np.array([joint.limits.get(name, absent) for joint in joints])
 
-    def stated(name: str) -> Floats:
-        found = (numbers_or(dynamics[joint], name, (0.0,), SimulationError) for joint in names)
-        return np.array([number for (number,) in found])
-
     return UrdfChain(
-        name=robot.get("name", ""),
-        root=root or root_link(text),
-        tip=tip or tip_of(robot, names[-1]),
+        name=described.name,
+        root=root or described.root,
+        tip=tip or described.tip(names[-1]),
         joint_names=names,
-        moving_links=tuple(joint.link for joint in joints),
+        moving_links=tuple(joint.child for joint in joints),
         lower=limits("lower", -np.inf),
         upper=limits("upper", np.inf),
         velocity=limits("velocity", np.inf),
         effort=limits("effort", np.inf),
-        damping=stated("damping"),
-        friction=stated("friction"),
+        damping=np.array([joint.damping for joint in joints]),
+        friction=np.array([joint.friction for joint in joints]),
         notes=_prepare_for_mujoco(robot, names),
         urdf=ElementTree.tostring(robot, encoding="unicode"),
     )

@@ -95,3 +95,17 @@ def test_the_list_has_no_more_than_what_is_imported() -> None:
 def test_verbs_import_no_other_verb() -> None:
     """What several verbs need is in modules that aren't verbs."""
     assert [m for m, others in IMPORTS.items() if any(".verb_" in other for other in others)] == []
+
+
+def test_functions_have_eight_parameters_at_most_and_options_with_types() -> None:
+    for file in FILES.values():
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.FunctionDef):
+                given = node.args
+                names = [a.arg for a in (*given.posonlyargs, *given.args, *given.kwonlyargs)]
+                assert len(names) - (names[:1] in (["self"], ["cls"])) <= 8, (file, node.name)
+                if given.kwarg is not None and given.kwarg.arg == "options":
+                    assert ast.unparse(given.kwarg.annotation).startswith("Unpack["), (
+                        file,
+                        node.name,
+                    )

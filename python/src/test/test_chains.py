@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from inverse_dynamics import Solver, available_solvers, errors
-from inverse_dynamics.robots.chain_geometry import chain_geometry
+from inverse_dynamics._core import RobotDescription
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.urdf import chain_from_urdf
 
@@ -275,13 +275,13 @@ def test_placements_of_a_model_file_begin_at_any_link_that_is_fixed_to_the_first
     )
     urdf = TWO_ARMS.replace("</robot>", label + "</robot>")
     names = ("left/j1", "left/slide", "left/j2")
-    first, second = (chain_geometry(urdf, root, names) for root in ("torso", "label"))
+    first, second = (RobotDescription(urdf).chain(names, root) for root in ("torso", "label"))
     c, s = np.cos(1), np.sin(1)
     to_label = [[c, s, 0, 0], [-s, c, 0, 0], [0, 0, 1, -0.1], [0, 0, 0, 1]]
     np.testing.assert_allclose(second[0].pose, to_label @ first[0].pose, atol=ROUNDING)
     assert np.array_equal(second[1].pose, first[1].pose)
     with pytest.raises(errors.RobotError, match="choose a root nearer to that of the description"):
-        chain_geometry(urdf, "left/hand", ("left/j2",))
+        RobotDescription(urdf).chain(("left/j2",), "left/hand")
 
 
 def test_a_simulated_robot_stands_on_any_link_that_is_fixed_to_its_root():

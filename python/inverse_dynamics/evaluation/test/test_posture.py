@@ -7,15 +7,14 @@ import mujoco
 import numpy as np
 import pytest
 
-from inverse_dynamics._core import ArmFitter
+from inverse_dynamics._core import ArmFitter, RobotDescription
 from inverse_dynamics.cli import make_parser
 from inverse_dynamics.evaluation.evaluation import evaluate
-from inverse_dynamics.evaluation.posture import posture_of
+from inverse_dynamics.evaluation.posture import carried_joints, posture_of
 from inverse_dynamics.identification import verb_identify as identify_verb
 from inverse_dynamics.recordings.bags import write_joint_logs
 from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.recordings.recordings import position_ranges
-from inverse_dynamics.robots.descriptions import carried_joints
 from inverse_dynamics.robots.robots import robot_of_description, with_changes
 from inverse_dynamics.robots.solvers import solver_of
 
@@ -161,11 +160,11 @@ def test_bodies_that_are_ignored_take_no_posture(tmp_path, urdf):
 
 
 def test_only_joints_on_moving_links_are_carried():
-    assert carried_joints(URDF, CHAIN) == {"left": "rad", "grip": "m"}
-    assert carried_joints(URDF, ("right",), "trunk") == {}
-    assert carried_joints(URDF, ("left",), "trunk") == {"grip": "m"}
+    assert carried_joints(RobotDescription(URDF), CHAIN) == {"left": "rad", "grip": "m"}
+    assert carried_joints(RobotDescription(URDF), ("right",), "trunk") == {}
+    assert carried_joints(RobotDescription(URDF), ("left",), "trunk") == {"grip": "m"}
     follower = URDF.replace("<axis xyz='1 0 0'/>", "<axis xyz='1 0 0'/><mimic joint='left'/>")
-    assert carried_joints(follower, CHAIN) == {"left": "rad"}
+    assert carried_joints(RobotDescription(follower), CHAIN) == {"left": "rad"}
 
 
 def test_ranges_are_of_all_messages(tmp_path):

@@ -34,8 +34,7 @@ from inverse_dynamics import (
     trajectory_torques,
     write_trajectory_torques,
 )
-from inverse_dynamics.errors import BagError, OutputError, RobotError
-from inverse_dynamics.robots.descriptions import effort_limits
+from inverse_dynamics.errors import BagError, OutputError
 
 BACKWARDS = JOINTS[::-1]
 
@@ -113,18 +112,6 @@ def test_a_limit_that_is_passed_is_found_with_its_first_time(tmp_path, torques, 
     assert abs(passing.peak) == pytest.approx(peaks[1])
     assert passing.peak_time == pytest.approx(since[np.abs(torques[:, 1]).argmax()])
     assert (free.passed_time, free.limit) == (None, np.inf)
-
-
-def test_limits_are_those_of_the_description(tmp_path):
-    text = '<robot><joint name="a"><limit effort="{}"/></joint><joint name="b"/></robot>'
-    file = tmp_path / "arm.urdf"
-    assert effort_limits(file, text.format("5"), ("b", "a")).tolist() == [np.inf, 5]
-    assert effort_limits(file, text.format("0"), ("a",)).tolist() == [np.inf]
-    assert effort_limits(None, "", ("a",)).tolist() == [np.inf]
-    with pytest.raises(
-        RobotError, match=r"joint a: <limit effort=...>: expected a finite number, got 'much'"
-    ):
-        effort_limits(file, text.format("much"), ("a",))
 
 
 @pytest.mark.parametrize("delimiter", [",", " "])

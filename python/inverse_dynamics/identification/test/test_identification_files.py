@@ -16,6 +16,7 @@ from identified_arms import arm, identification, predicted_torques, simulated_to
 from pages import data_of
 
 from inverse_dynamics import FastModel, Solver, evaluate, write_joint_logs
+from inverse_dynamics._core import RobotDescription
 from inverse_dynamics.errors import OutputError, RobotError, SolverError
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.identification import files as identifications
@@ -27,7 +28,6 @@ from inverse_dynamics.identification.universal_robots import friction_request
 from inverse_dynamics.outputs.plain import plain
 from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.robots import robot_files
-from inverse_dynamics.robots.chain_geometry import chain_geometry
 from inverse_dynamics.robots.link_parameters import turned
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot
 
@@ -69,10 +69,10 @@ def test_the_robot_evaluates_with_the_error_of_the_noise(found, files, tmp_path)
 
 def test_parameters_are_in_the_frames_of_the_description():
     """Centers of mass are where the URDF's text says, wherever the axes of the joints point."""
-    geometry = chain_geometry(URDF.read_text(), "base_link", JOINTS)
+    geometry = RobotDescription(URDF.read_text()).chain(JOINTS, "base_link")
     links = {link.get("name"): link for link in ElementTree.parse(URDF).iter("link")}
     for row, joint in zip(arm().parameters, geometry, strict=True):
-        origin = links[joint.link].find("inertial/origin").get("xyz")
+        origin = links[joint.child].find("inertial/origin").get("xyz")
         own = turned(row, joint.rotation_from_z)
         np.testing.assert_allclose(
             own[1:4] / own[0], [float(x) for x in origin.split()], atol=1e-12

@@ -27,9 +27,9 @@ from inverse_dynamics.show.scene import (
 
 ARM = """<robot name="arm">
 <link name="base">{base}</link><link name="upper">{upper}</link><link name="fore">{upper}</link>
-<joint name="a" type="revolute"><parent link="base"/><child link="upper"/>
+<joint name="a" type="continuous"><parent link="base"/><child link="upper"/>
 <origin xyz="0 0 0.3"/><axis xyz="0 1 0"/></joint>
-<joint name="b" type="revolute"><parent link="upper"/><child link="fore"/>
+<joint name="b" type="continuous"><parent link="upper"/><child link="fore"/>
 <origin xyz="0.4 0 0"/><axis xyz="0 1 0"/></joint>
 </robot>"""
 BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
