@@ -48,7 +48,7 @@ struct FrictionNumbers {
   Number shift;   ///< the step is at qd = -shift [rad/s]
   Number center;  ///< part of the step that is taken off: 1/2 makes it symmetric
   Number fl;      ///< what a gravity torque of 1 N m adds to the height of the step; >= 0
-  Number fs;      ///< what the Stribeck effect adds at rest [N m]
+  Number fs;      ///< what the Stribeck effect adds at rest, of either sign [N m]
   Number per_vs;  ///< 1 / vs [s/rad]
 };
 
