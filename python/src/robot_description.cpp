@@ -136,7 +136,7 @@ const char* typeOf(const DescribedJoint& joint) {
 std::map<std::string, double> limitsOf(const DescribedJoint& joint) {
   const auto& limits = joint.limits;
   std::map<std::string, double> stated;
-  if (limits.lower < limits.upper && std::isfinite(limits.upper - limits.lower)) {
+  if ((limits.lower != 0 || limits.upper != 0) && std::isfinite(limits.upper - limits.lower)) {
     stated = {{"lower", limits.lower}, {"upper", limits.upper}};
   }
   for (const auto& [name, value] :
