@@ -17,7 +17,7 @@ import numpy as np
 from inverse_dynamics._core import FastModel, RobotDescription
 from inverse_dynamics.errors import RobotError, SolverError
 from inverse_dynamics.robots.robots import RIGID_BODY
-from inverse_dynamics.robots.solvers import brings_own_model, open_solver
+from inverse_dynamics.robots.solvers import brings_own_model
 
 if TYPE_CHECKING:
     from inverse_dynamics._core import Solver
@@ -74,11 +74,11 @@ def arm_model(arm: Arm, *, without_gravity: bool = False) -> ArmModel:
 
     @cache
     def other() -> Solver:  # one that may be changed, of rigid bodies alone
-        return open_solver(replace(robot, friction=False), description)
+        return arm.solver_with(friction=False)
 
     @cache
     def turned() -> Solver:
-        return _of_description(robot, description, other())
+        return _of_description(arm, other())
 
     def pulled(q: Floats) -> Floats:
         before, parts = turned().gravity, []
@@ -118,13 +118,13 @@ def arm_model(arm: Arm, *, without_gravity: bool = False) -> ArmModel:
     return model
 
 
-def _of_description(robot: Robot, description: str, own: Solver) -> Solver:
+def _of_description(arm: Arm, own: Solver) -> Solver:
     """Solver whose gravity is rotated: the description's, as identified values may hold for one direction only."""
-    if description and brings_own_model(robot):
-        load = {name: v for name, v in robot.parameters.items() if name.startswith("payload.")}
-        changed = replace(robot, plugin=RIGID_BODY, friction=False, parameters=load)
-        with suppress(SolverError, RobotError):  # it needn't have masses, nor these joints
-            found = open_solver(changed, description)
+    if arm.description and brings_own_model(arm.robot):
+        given = arm.robot.parameters.items()
+        load = {name: v for name, v in given if name.startswith("payload.")}
+        with suppress(SolverError):  # it needn't have masses, nor these joints
+            found = arm.solver_with(plugin=RIGID_BODY, friction=False, parameters=load)
             if found.joint_names == own.joint_names:
                 return found
     return own

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from inverse_dynamics.errors import RobotError
 from inverse_dynamics.robots.descriptions import parse_description, read_description
 from inverse_dynamics.robots.located_yaml import read_mapping
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot
-from inverse_dynamics.robots.solvers import open_solver
+from inverse_dynamics.robots.solvers import make_solver, open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -63,7 +63,11 @@ class Arm:
         robot = self.robot
         if robot.model is None or robot.urdf is None or robot.plugin != RIGID_BODY:
             return self.solver
-        return open_solver(replace(robot, model=None, friction=False), self.description)
+        return self.solver_with(model=None, friction=False)
+
+    def solver_with(self, **changes: Any) -> Solver:
+        """Another solver, of the same arm with other entries of its run configuration. Raises SolverError."""
+        return make_solver(replace(self.robot, **changes), self.description)
 
 
 def _model_limits(file: Path) -> list[dict[str, float]]:

@@ -22,7 +22,7 @@ def open_solver(robot: Robot, description: str = "") -> _core.Solver:
     Raises SolverError: the solver's, with the robot before its text; RobotError: root and tip that
     the solver doesn't use, and that don't belong to its joints.
     """
-    solver = _made(robot, description)
+    solver = make_solver(robot, description)
     if (robot.root or robot.tip) and (description or robot.urdf is None):
         _check_links(robot, description, solver)
     return solver
@@ -44,7 +44,7 @@ def _check_links(robot: Robot, description: str, solver: _core.Solver) -> None:
         )
     own, reader = list(solver.joint_names), replace(robot, plugin=RIGID_BODY)
     reader = replace(reader, gravity=None, parameters={"allow_massless": True})
-    chain = list(_made(reader, description).joint_names)
+    chain = list(make_solver(reader, description).joint_names)
     # joints of other names may be the same ones
     if chain != own if set(chain) & set(own) else len(chain) != len(own):
         raise RobotError(
@@ -54,7 +54,8 @@ def _check_links(robot: Robot, description: str, solver: _core.Solver) -> None:
         )
 
 
-def _made(robot: Robot, description: str) -> _core.Solver:
+def make_solver(robot: Robot, description: str) -> _core.Solver:
+    """The same as open_solver() for root and tip that have been checked."""
     try:
         # without a description none is read, not even the robot's own
         model = None if robot.model is None else str(robot.model)
@@ -79,7 +80,7 @@ def description_notes(robot: Robot, use: str) -> list[str]:
 def brings_own_model(robot: Robot) -> bool:
     """Whether the solver has no need of a description or model file: then it reads none."""
     try:
-        _made(replace(robot, model=None), "")
+        make_solver(replace(robot, model=None), "")
     except SolverError:
         return False
     return True
