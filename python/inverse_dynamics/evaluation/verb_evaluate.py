@@ -127,9 +127,9 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any]) -> None:
     from inverse_dynamics.evaluation.files import PAGE, evaluate_into, metrics
-    from inverse_dynamics.evaluation.tables import evaluation_table
+    from inverse_dynamics.evaluation.tables import evaluation_table, heading
     from inverse_dynamics.recordings.several_recordings import name_of
-    from inverse_dynamics.terminal.screen import heading, progress_bar, show
+    from inverse_dynamics.terminal.screen import progress_bar, show
     from inverse_dynamics.terminal.tables import on_screen
 
     (bag,) = arguments.bags
@@ -162,7 +162,7 @@ def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, An
     from inverse_dynamics.errors import PartialError
     from inverse_dynamics.evaluation.many_evaluations import evaluate_many, failures_text, summary
     from inverse_dynamics.evaluation.tables import recordings_table
-    from inverse_dynamics.terminal.screen import progress_bar, show, title
+    from inverse_dynamics.terminal.screen import progress_bar, show
     from inverse_dynamics.terminal.tables import on_screen
 
     with progress_bar() as progress:
@@ -177,7 +177,7 @@ def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, An
             **options,
         )
     lines: list[Line] = [
-        title(robot),
+        ("", robot.description or robot.name),
         ("solver", result.summaries[0].plugin),
         on_screen(recordings_table(result.summaries)),
         ("page", result.directory / "report.html"),

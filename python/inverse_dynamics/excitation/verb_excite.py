@@ -117,7 +117,7 @@ def run(arguments: argparse.Namespace) -> None:
         write_excitation,
     )
     from inverse_dynamics.robots.robots import with_changes
-    from inverse_dynamics.terminal.screen import announce, progress_bar, show, title
+    from inverse_dynamics.terminal.screen import announce, progress_bar, show
     from inverse_dynamics.terminal.tables import on_screen
 
     robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
@@ -147,7 +147,7 @@ def run(arguments: argparse.Namespace) -> None:
         summary(result),
         files,
         [
-            title(result.robot),
+            ("", result.robot.description or result.robot.name),
             ("note", result.notes),
             ("motion", motion),
             ("noise", result.noise_source),

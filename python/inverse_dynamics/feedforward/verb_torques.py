@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.feedforward.tables import load_table
     from inverse_dynamics.feedforward.trajectory_torques import trajectory_torques
     from inverse_dynamics.robots.solvers import description_notes
-    from inverse_dynamics.terminal.screen import progress_bar, show, title
+    from inverse_dynamics.terminal.screen import progress_bar, show
     from inverse_dynamics.terminal.tables import on_screen
 
     with progress_bar() as progress:
@@ -84,7 +84,7 @@ def run(arguments: argparse.Namespace) -> None:
         {**summary(result), "notes": notes},
         [arguments.out],
         [
-            title(robot),
+            ("", robot.description or robot.name),
             ("solver", f"{robot.plugin}{'' if robot.friction else ', friction left out'}"),
             ("trajectories", f"{len(result.times)}, with {points} together"),
             ("energy", str(result.energy)),

@@ -223,10 +223,9 @@ def _lines(
 ) -> Iterator[Line]:
     from inverse_dynamics.identification.summary import choices_told
     from inverse_dynamics.identification.tables import held_out_table
-    from inverse_dynamics.terminal.screen import title
     from inverse_dynamics.terminal.tables import on_screen
 
-    yield title(found.robot)
+    yield "", found.robot.description or found.robot.name
     yield "recordings", ", ".join(map(str, found.recordings))
     yield from choices_told(found)
     yield "note", found.notes

@@ -70,6 +70,7 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.evaluation.tables import heading
     from inverse_dynamics.payload.files import (
         check_payload_output,
         payload_files,
@@ -77,7 +78,7 @@ def run(arguments: argparse.Namespace) -> None:
         write_payload,
     )
     from inverse_dynamics.payload.tables import payload_table, residual_table
-    from inverse_dynamics.terminal.screen import heading, progress_bar, show
+    from inverse_dynamics.terminal.screen import progress_bar, show
     from inverse_dynamics.terminal.tables import on_screen
 
     robot = chosen_robot(arguments)

@@ -103,7 +103,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.retiming.files import PAGE, summary, write_retimed
     from inverse_dynamics.retiming.retiming import PER_JOINT, retime
     from inverse_dynamics.retiming.tables import retime_table
-    from inverse_dynamics.terminal.screen import show, title
+    from inverse_dynamics.terminal.screen import show
     from inverse_dynamics.terminal.tables import on_screen
 
     given = {name: getattr(arguments, name) for name in PER_JOINT if getattr(arguments, name)}
@@ -144,7 +144,7 @@ def run(arguments: argparse.Namespace) -> None:
         summary(result),
         [arguments.out],
         [
-            title(robot),
+            ("", robot.description or robot.name),
             ("duration", f"{result.duration:.3f} s"),
             ("by acceleration", by_acceleration),
             ("energy", str(result.energy)),
