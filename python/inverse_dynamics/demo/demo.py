@@ -15,9 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.comparison import files as comparisons
-from inverse_dynamics.comparison.comparison import compare
-from inverse_dynamics.comparison.files import write_comparison
+from inverse_dynamics.comparison.comparison import Comparison, compare
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.evaluation.files import CONTENTS, write_evaluation
@@ -32,7 +30,6 @@ from inverse_dynamics.robots.robots import RIGID_BODY, load_robot
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from inverse_dynamics.comparison.comparison import Comparison
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.progress import Progress
 
@@ -141,7 +138,8 @@ def run_demo(
             write_evaluation(rigid, target / "ur10_real_urdf", figures=(), progress=progress)
             labels = ("identified, with friction", "rigid bodies of the URDF")
             comparison = compare([evaluations["ur10_real"], rigid], labels)
-            write_comparison(comparison, target / "comparison", figures=figures, page=False)
+            (target / "comparison").mkdir()
+            comparison.write(target / "comparison", figures, page=False)
         say("writing the page")
         _write_page(target, evaluations, comparison, notes)
     return Demo(Path(out), evaluations, comparison, tuple(notes))
@@ -163,7 +161,7 @@ def _contents() -> Contents:
     """All files of a demonstration."""
     from inverse_dynamics.simulation import run
 
-    parts = {"comparison": comparisons.CONTENTS, "ur10_real_urdf": CONTENTS}
+    parts = {"comparison": Comparison.contents, "ur10_real_urdf": CONTENTS}
     parts |= dict.fromkeys(TITLES, CONTENTS)
     parts |= {f"{name}_bag": run.CONTENTS for name in SIMULATED}
     files = (
