@@ -68,9 +68,9 @@ if TYPE_CHECKING:
     from inverse_dynamics.recordings.bags import write_joint_logs as write_joint_logs
     from inverse_dynamics.recordings.joint_log import JointLog as JointLog
     from inverse_dynamics.recordings.recordings import read_recording as read_recording
-    from inverse_dynamics.retiming.files import write_retimed as write_retimed
     from inverse_dynamics.retiming.retiming import Retimed as Retimed
     from inverse_dynamics.retiming.retiming import retime as retime
+    from inverse_dynamics.retiming.retiming import write_retimed as write_retimed
     from inverse_dynamics.robots.robots import Robot as Robot
     from inverse_dynamics.robots.robots import load_robot as load_robot
     from inverse_dynamics.robots.robots import robot_names as robot_names
@@ -97,8 +97,7 @@ _MODULES = {  # and the names that users know
     "recordings.bags": ("read_joint_log", "read_topics", "write_joint_logs"),
     "recordings.joint_log": ("JointLog",),
     "recordings.recordings": ("read_recording",),
-    "retiming.files": ("write_retimed",),
-    "retiming.retiming": ("Retimed", "retime"),
+    "retiming.retiming": ("Retimed", "retime", "write_retimed"),
     "robots.robots": ("Robot", "load_robot", "robot_names"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}

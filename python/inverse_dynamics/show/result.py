@@ -86,6 +86,10 @@ class ResultDirectory(Result):
     """A result whose files are those of a directory."""
 
     contents: ClassVar[Contents]
+    data: ClassVar[str] = ""  # file of the numbers, where it isn't the mark of `contents`
+
+    def write_more(self, directory: Path, storage: Storage | None, progress: Progress) -> None:
+        """Write what other results don't have."""
 
     def arrays(self) -> dict[str, Any]:
         """Samples, for numpy.savez()."""
@@ -146,15 +150,19 @@ class ResultDirectory(Result):
         page: bool = True,
         progress: Progress = no_progress,
     ) -> None:
-        """Write the files that all results have, those of `contents`. page: report.html, too."""
+        """Write the files of `contents`. page: report.html, too."""
         files = self.contents.files
-        write_text(directory / self.contents.mark, json_text(self.numbers()))
+        self.write_more(directory, storage, progress)
+        write_text(directory / (self.data or self.contents.mark), json_text(self.numbers()))
         if SERIES in files:
             np.savez(directory / SERIES, **self.arrays())
         if PAGE in files and page:
             write_text(directory / PAGE, self.page())
-        drawn = (directory / f for s in figures for f in files if f.endswith(f".{s}"))
-        save_figure(self.plot, *drawn)
+        if figures:
+            progress("plotting", 0, 1)
+            drawn = (directory / f for s in figures for f in files if f.endswith(f".{s}"))
+            save_figure(self.plot, *drawn)
+            progress("plotting", 1, 1)
 
 
 class ResultFiles(Result):
