@@ -34,11 +34,11 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.evaluation import JointError as JointError
     from inverse_dynamics.evaluation.evaluation import evaluate as evaluate
     from inverse_dynamics.evaluation.evaluation import evaluate_run as evaluate_run
+    from inverse_dynamics.evaluation.evaluation import write_evaluation as write_evaluation
     from inverse_dynamics.evaluation.exports import export_series as export_series
     from inverse_dynamics.evaluation.figure import save_torque_figure as save_torque_figure
     from inverse_dynamics.evaluation.figure import torque_figure as torque_figure
     from inverse_dynamics.evaluation.files import read_evaluation as read_evaluation
-    from inverse_dynamics.evaluation.files import write_evaluation as write_evaluation
     from inverse_dynamics.evaluation.many_evaluations import ManyEvaluations as ManyEvaluations
     from inverse_dynamics.evaluation.many_evaluations import evaluate_many as evaluate_many
     from inverse_dynamics.evaluation.run import Run as Run
@@ -80,10 +80,12 @@ _MODULES = {  # and the names that users know
     "contacts.contacts": ("Contacts", "find_contacts"),
     "diagnosis.diagnose": ("diagnose",),
     "errors": ("UserError",),
-    "evaluation.evaluation": ("Evaluation", "JointError", "evaluate", "evaluate_run"),
+    "evaluation.evaluation": (
+        *("Evaluation", "JointError", "evaluate", "evaluate_run", "write_evaluation"),
+    ),
     "evaluation.exports": ("export_series",),
     "evaluation.figure": ("save_torque_figure", "torque_figure"),
-    "evaluation.files": ("read_evaluation", "write_evaluation"),
+    "evaluation.files": ("read_evaluation",),
     "evaluation.many_evaluations": ("ManyEvaluations", "evaluate_many"),
     "evaluation.run": ("Run", "open_run"),
     "excitation.excite": ("ExcitationResult", "excite", "write_excitation"),

@@ -28,6 +28,7 @@ from inverse_dynamics.outputs.files import (
 )
 from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.progress import no_progress
+from inverse_dynamics.recordings.joint_log import check_storage
 from inverse_dynamics.show.plots import FORMATS, check_formats, save_figure
 from inverse_dynamics.show.tables import ReportTable
 
@@ -78,7 +79,7 @@ class Result(ABC):
         lines = [type(self).__name__]
         for line in texts_of(self.lines()):
             key, text = ("table", line.title) if isinstance(line, ReportTable) else line
-            lines.append(shorten(f"{key or 'robot':<14} {text}", _LONGEST_LINE))
+            lines.append(shorten(f"{key or 'robot'}: {text}", _LONGEST_LINE))
         return "\n".join(lines[:_MOST_LINES])
 
 
@@ -133,6 +134,8 @@ class ResultDirectory(Result):
             OutputError, BagError, MissingPackageError.
         """
         check_formats(figures)
+        if storage is not None:
+            check_storage(storage)
         with written_whole(
             Path(out),
             overwrite=overwrite,
