@@ -180,8 +180,8 @@ class ResultFiles(Result):
     def texts(self, files: Sequence[Path]) -> Iterable[str]:
         """Contents of the files that are no figures, in their order."""
 
-    def test(self, fresh: Mapping[Path, Path]) -> None:
-        """Raise UserError where files can't be used. fresh: where they are, by where they will be."""
+    def test(self, fresh: Sequence[Path]) -> None:
+        """Raise UserError where the files, which are in a work folder, can't be used."""
 
     @classmethod
     def files(cls, out: Path | str, figures: Sequence[str] = ()) -> tuple[Path, ...]:
@@ -210,7 +210,8 @@ class ResultFiles(Result):
 
         more: further files, by option. inputs: what must not be overwritten.
         """
-        check_formats(figures)
+        if any("{figure}" in name for name in cls.names):
+            check_formats(figures)
         named = [*(("--out", f) for f in cls.files(out, figures)), *(more or {}).items()]
         inputs = tuple(inputs)
         for option, file in named:
@@ -261,7 +262,7 @@ class ResultFiles(Result):
             for file, text in texts.items():
                 write_text(fresh[file], text)
             save_figure(self.plot, *map(fresh.__getitem__, drawn))
-            self.test(fresh)
+            self.test([fresh[file] for file in files])
 
 
 def files_of(mark: str, figure: str, *more: str, added: Sequence[str] = ()) -> Contents:
