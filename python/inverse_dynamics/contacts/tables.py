@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.evaluation.tables import heading
+from inverse_dynamics.outputs.plain import objects_of_joints
 from inverse_dynamics.show.tables import ReportTable, of_joints
 from inverse_dynamics.wording import counted, listed
 
@@ -19,6 +20,7 @@ def contact_numbers(contacts: Contacts) -> dict[str, Any]:
     """Contacts, thresholds and how they came about, for JSON."""
     evaluation, thresholds = contacts.evaluation, contacts.thresholds
     names = ("torques", "noise", "correlation_time", "peaks", "level", "scale", "shape")
+    columns = {name: getattr(thresholds, name) for name in names}
     return {
         "schema": 1,
         "bag": evaluation.bag,
@@ -33,12 +35,7 @@ def contact_numbers(contacts: Contacts) -> dict[str, Any]:
         "effort": evaluation.effort.meaning,
         "quiet": contacts.quiet,
         "false_alarms_per_hour": thresholds.false_alarms_per_hour,
-        "joints": [
-            {"joint": joint, "unit": unit} | {name: getattr(thresholds, name)[j] for name in names}
-            for j, (joint, unit) in enumerate(
-                zip(evaluation.joint_names, evaluation.units, strict=True)
-            )
-        ],
+        "joints": objects_of_joints(evaluation.joint_names, evaluation.units, columns),
         "contacts": contacts.contacts,
         "interruptions": contacts.interruptions,
         "blind": contacts.blind,

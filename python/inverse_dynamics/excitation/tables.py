@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.outputs.plain import objects_of_joints
 from inverse_dynamics.show.tables import of_joints
 
 if TYPE_CHECKING:
@@ -20,23 +21,21 @@ _AFTER = {"description": "before", "given": "given", "stored": "stored", "motion
 def excitation_numbers(result: ExcitationResult) -> dict[str, Any]:
     """Motion of each joint and uncertainty after it, for JSON."""
     names = ("velocity_share", "acceleration_share", "torque_share")
+    deviations = zip(*result.deviation.values(), strict=True)
+    columns = {
+        **dict(zip(("lower", "upper"), result.travel.T, strict=True)),
+        **dict(zip(names, result.greatest, strict=True)),
+        "noise": result.noise,
+        "deviation": [
+            dict(zip(result.deviation, of_joint, strict=True)) for of_joint in deviations
+        ],
+    }
     return {
         "robot": result.robot.name,
         "duration": result.excitation.trajectory.duration,
         "condition_number": result.excitation.condition_number,
         "noise_source": result.noise_source,
-        "joints": [
-            {
-                "joint": joint,
-                "unit": unit,
-                "lower": result.travel[j, 0],
-                "upper": result.travel[j, 1],
-                **dict(zip(names, result.greatest[:, j], strict=True)),
-                "noise": result.noise[j],
-                "deviation": {name: values[j] for name, values in result.deviation.items()},
-            }
-            for j, (joint, unit) in enumerate(zip(result.joint_names, result.units, strict=True))
-        ],
+        "joints": objects_of_joints(result.joint_names, result.units, columns),
         "notes": result.notes,
     }
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.evaluation.tables import heading
+from inverse_dynamics.outputs.plain import objects_of_joints
 from inverse_dynamics.payload.universal_robots import UPPER
 from inverse_dynamics.show.tables import ReportTable, number, of_joints
 
@@ -21,6 +22,13 @@ def payload_numbers(payload: Payload) -> dict[str, Any]:
     """All numbers, for JSON."""
     found, evaluation = payload.estimate, payload.evaluation
     known = found.inertia_is_known
+    columns = {
+        "rmse_before": payload.rmse_before,
+        "rmse_after": payload.rmse_after,
+        "offset": found.offset,
+        "white_noise": payload.noise.white,
+        "correlated_noise": payload.noise.correlated,
+    }
     return {
         "schema": 1,
         "bag": evaluation.bag,
@@ -42,18 +50,7 @@ def payload_numbers(payload: Payload) -> dict[str, Any]:
         "samples": len(payload.time),
         "rounds": payload.rounds,
         "correlation_time": payload.noise.correlation_time,
-        "joints": [
-            {
-                "joint": name,
-                "unit": evaluation.units[j],
-                "rmse_before": payload.rmse_before[j],
-                "rmse_after": payload.rmse_after[j],
-                "offset": found.offset[j],
-                "white_noise": payload.noise.white[j],
-                "correlated_noise": payload.noise.correlated[j],
-            }
-            for j, name in enumerate(payload.joint_names)
-        ],
+        "joints": objects_of_joints(payload.joint_names, evaluation.units, columns),
         "notes": payload.notes,
     }
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.outputs.plain import objects_of_joints
 from inverse_dynamics.show.tables import ReportTable, of_joints
 
 if TYPE_CHECKING:
@@ -17,6 +18,14 @@ if TYPE_CHECKING:
 def retime_numbers(result: Retimed) -> dict[str, Any]:
     """Durations, limits and loads, for JSON."""
     peak = np.abs(result.efforts).argmax(axis=0)
+    columns = {
+        "limit": result.limits.torque,
+        "band": result.band,
+        "peak": np.take_along_axis(result.efforts, peak[None], axis=0)[0],
+        "peak_time": result.time[peak],
+        "peak_velocity": np.abs(result.qd).max(axis=0),
+        "at_limit": result.at_limit,
+    }
     return {
         "schema": 1,
         "robot": result.robot.name,
@@ -25,19 +34,7 @@ def retime_numbers(result: Retimed) -> dict[str, Any]:
         "duration_by_acceleration": result.duration + result.seconds_saved,
         "acceleration": result.acceleration,
         **result.energy.numbers,
-        "joints": [
-            {
-                "joint": joint,
-                "unit": result.units[j],
-                "limit": result.limits.torque[j],
-                "band": result.band[j],
-                "peak": result.efforts[peak[j], j],
-                "peak_time": result.time[peak[j]],
-                "peak_velocity": np.abs(result.qd[:, j]).max(),
-                "at_limit": result.at_limit[j],
-            }
-            for j, joint in enumerate(result.joint_names)
-        ],
+        "joints": objects_of_joints(result.joint_names, result.units, columns),
         "notes": result.notes,
     }
 
