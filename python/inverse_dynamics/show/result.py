@@ -136,12 +136,9 @@ class ResultDirectory(Result):
         check_formats(figures)
         if storage is not None:
             check_storage(storage)
-        with written_whole(
-            Path(out),
-            overwrite=overwrite,
-            contents=self.contents,
-            inputs=(*self.inputs(), *inputs),
-        ) as directory:
+        inputs = (*self.inputs(), *inputs)
+        whole = written_whole(Path(out), overwrite=overwrite, contents=self.contents, inputs=inputs)
+        with whole as directory:
             self.write(directory, figures, storage=storage, progress=progress)
 
     def write(
@@ -171,9 +168,8 @@ class ResultDirectory(Result):
 class ResultFiles(Result):
     """A result whose files lie beside each other: NAME.yaml, and others that are named after it."""
 
-    names: ClassVar[
-        tuple[str, ...]
-    ]  # of the others; {stem}, {suffix}: of NAME.yaml; {figure}: a format
+    # Of the others; {stem}, {suffix}: those of NAME.yaml; {figure}: a format.
+    names: ClassVar[tuple[str, ...]]
     reader: ClassVar[str | None] = None  # what takes NAME.yaml, in words; None: any suffix will do
 
     @abstractmethod
@@ -185,15 +181,18 @@ class ResultFiles(Result):
 
     @classmethod
     def files(cls, out: Path | str, figures: Sequence[str] = ()) -> tuple[Path, ...]:
-        """NAME.yaml and the others. Raises OutputError."""
+        """NAME.yaml and the others, figures last. Raises OutputError."""
         out = Path(out)
         if cls.reader is not None and out.suffix not in (".yaml", ".yml"):
             raise OutputError(
                 f"{out}: expected a name ending in .yaml{cls.reader}; name another file with --out"
             )
         parts = {"stem": out.stem, "suffix": out.suffix}
-        formats = {name: figures if "{figure}" in name else ("",) for name in cls.names}
-        names = (n.format(**parts, figure=f) for n, chosen in formats.items() for f in chosen)
+        names = (
+            name.format(**parts, figure=figure)
+            for name in cls.names
+            for figure in (dict.fromkeys(figures) if "{figure}" in name else ("",))
+        )
         return out, *map(out.with_name, names)
 
     @classmethod
@@ -232,30 +231,17 @@ class ResultFiles(Result):
         figures: Sequence[str] = ("png",),
         more: Mapping[Path, str] | None = None,
     ) -> None:
-        """Write all files, or none of them.
+        """Write NAME.yaml, which is `out`, and the others; all files, or none of them.
 
-        Parameters
-        ----------
-        out
-            NAME.yaml; the others have its name.
-        overwrite
-            Replace older files.
-        figures
-            As of ResultDirectory, where there is a figure.
-        more
-            Texts of further files, by file.
-
-        Raises
-        ------
-        UserError
-            OutputError, MissingPackageError.
+        overwrite: replace older ones. figures: formats, where there is a figure. more: texts of further
+        files, by file. Raises OutputError, MissingPackageError.
         """
         more = more or {}
         options = {f"{file}": file for file in more}
         self.check(out, overwrite=overwrite, figures=figures, more=options, inputs=self.inputs())
         files = self.files(out)
         texts = {**dict(zip(files, self.texts(files), strict=True)), **more}
-        drawn = [file for file in self.files(out, figures) if file not in files]
+        drawn = self.files(out, figures)[len(files) :]
         targets = [*files[1:], *drawn, *more, files[0]]  # last the one that names the others
         with files_written_whole(targets) as places:
             fresh = dict(zip(targets, places, strict=True))
