@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from html import escape
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -110,6 +111,11 @@ class Views(ResultDirectory):
             "recording": {name: getattr(log, name) for name in recording},
         }
         write_text(directory / self.contents.mark, json_text(about))
+
+    def __getstate__(self: Any) -> dict[str, Any]:
+        """All that files hold: a copy has no run, whose solver can't be copied."""
+        found = self.explained
+        return {field.name: getattr(found, field.name) for field in fields(found)} | {"run": None}
 
     def __repr__(self: Any) -> str:
         rows = [_HEAD, *self._rows()]

@@ -97,7 +97,7 @@ class Fit:
 
 
 @dataclass(frozen=True, repr=False)
-class Payload(Fit, ResultFiles):
+class Payload(ResultFiles, Fit):
     """What was found. N samples, n joints; order of the chain."""
 
     names = ("{stem}.json", "{stem}.html", "{stem}.{figure}")

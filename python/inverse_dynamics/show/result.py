@@ -68,18 +68,18 @@ class Result(ABC):
         return ()
 
     def plot(self) -> Figure:
-        """A figure of matplotlib. Raises MissingPackageError."""
+        """A figure of matplotlib, where there is one. Raises MissingPackageError."""
         raise NotImplementedError
 
     def page(self) -> str:
-        """An HTML page, complete in itself."""
+        """An HTML page, complete in itself, where there is one."""
         raise NotImplementedError
 
     def __repr__(self) -> str:
         lines = [type(self).__name__]
         for line in texts_of(self.lines()):
             key, text = ("table", line.title) if isinstance(line, ReportTable) else line
-            lines.append(shorten(f"{key or 'robot'}: {text}", _LONGEST_LINE))
+            lines += [shorten(f"{key or 'robot'}: {text}", _LONGEST_LINE)] if text else []
         return "\n".join(lines[:_MOST_LINES])
 
 
