@@ -34,11 +34,11 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.evaluation import JointError as JointError
     from inverse_dynamics.evaluation.evaluation import evaluate as evaluate
     from inverse_dynamics.evaluation.evaluation import evaluate_run as evaluate_run
+    from inverse_dynamics.evaluation.evaluation import write_evaluation as write_evaluation
     from inverse_dynamics.evaluation.exports import export_series as export_series
     from inverse_dynamics.evaluation.figure import save_torque_figure as save_torque_figure
     from inverse_dynamics.evaluation.figure import torque_figure as torque_figure
     from inverse_dynamics.evaluation.files import read_evaluation as read_evaluation
-    from inverse_dynamics.evaluation.files import write_evaluation as write_evaluation
     from inverse_dynamics.evaluation.many_evaluations import ManyEvaluations as ManyEvaluations
     from inverse_dynamics.evaluation.many_evaluations import evaluate_many as evaluate_many
     from inverse_dynamics.evaluation.run import Run as Run
@@ -68,9 +68,9 @@ if TYPE_CHECKING:
     from inverse_dynamics.recordings.bags import write_joint_logs as write_joint_logs
     from inverse_dynamics.recordings.joint_log import JointLog as JointLog
     from inverse_dynamics.recordings.recordings import read_recording as read_recording
-    from inverse_dynamics.retiming.files import write_retimed as write_retimed
     from inverse_dynamics.retiming.retiming import Retimed as Retimed
     from inverse_dynamics.retiming.retiming import retime as retime
+    from inverse_dynamics.retiming.retiming import write_retimed as write_retimed
     from inverse_dynamics.robots.robots import Robot as Robot
     from inverse_dynamics.robots.robots import load_robot as load_robot
     from inverse_dynamics.robots.robots import robot_names as robot_names
@@ -80,10 +80,12 @@ _MODULES = {  # and the names that users know
     "contacts.contacts": ("Contacts", "find_contacts"),
     "diagnosis.diagnose": ("diagnose",),
     "errors": ("UserError",),
-    "evaluation.evaluation": ("Evaluation", "JointError", "evaluate", "evaluate_run"),
+    "evaluation.evaluation": (
+        *("Evaluation", "JointError", "evaluate", "evaluate_run", "write_evaluation"),
+    ),
     "evaluation.exports": ("export_series",),
     "evaluation.figure": ("save_torque_figure", "torque_figure"),
-    "evaluation.files": ("read_evaluation", "write_evaluation"),
+    "evaluation.files": ("read_evaluation",),
     "evaluation.many_evaluations": ("ManyEvaluations", "evaluate_many"),
     "evaluation.run": ("Run", "open_run"),
     "excitation.excite": ("ExcitationResult", "excite", "write_excitation"),
@@ -97,8 +99,7 @@ _MODULES = {  # and the names that users know
     "recordings.bags": ("read_joint_log", "read_topics", "write_joint_logs"),
     "recordings.joint_log": ("JointLog",),
     "recordings.recordings": ("read_recording",),
-    "retiming.files": ("write_retimed",),
-    "retiming.retiming": ("Retimed", "retime"),
+    "retiming.retiming": ("Retimed", "retime", "write_retimed"),
     "robots.robots": ("Robot", "load_robot", "robot_names"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}

@@ -12,21 +12,43 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.comparison.figure import comparison_figure
+from inverse_dynamics.comparison.page import comparison_page
+from inverse_dynamics.comparison.tables import comparison_numbers, comparison_table
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.show.result import PAGE, ResultDirectory, files_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.show.result import Line
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False)
+class Comparison(ResultDirectory):
     """Evaluations of one recording, and their labels."""
+
+    contents = files_of("comparison.json", "comparison", PAGE)
+    numbers, plot, page = comparison_numbers, comparison_figure, comparison_page
 
     evaluations: tuple[Evaluation, ...]
     labels: tuple[str, ...]  # one per evaluation, all different
+
+    def inputs(self) -> list[Path | None]:
+        """The recordings and the robots' files."""
+        return [path for e in self.evaluations for path in (e.bag, *e.robot.files)]
+
+    def lines(self) -> list[Line]:
+        """The table."""
+        return [comparison_table(self)]
+
+    @property
+    def title(self) -> str:
+        """Recording and labels."""
+        return f"{self.evaluations[0].bag.name}: {' against '.join(self.labels)}"
 
     @property
     def rmse(self) -> Floats:

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 def comparison_figure(comparison: Comparison) -> Figure:
     """Measured torque and that of each run over time, and the runs' errors, one row per joint."""
-    first, labels = comparison.evaluations[0], comparison.labels
+    labels = comparison.labels
     styles = [{"color": run_color(k), "linewidth": 0.9} for k in range(len(labels))]
-    heading = (f"{first.bag.name}: {' against '.join(labels)}",)
-    return runs_figure(comparison.evaluations, labels, styles, heading)
+    return runs_figure(comparison.evaluations, labels, styles, (comparison.title,))

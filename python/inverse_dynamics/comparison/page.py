@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A comparison as the report's page wants it."""
+"""A comparison as a page, and as a part of one."""
 
 from __future__ import annotations
 
@@ -8,10 +8,16 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.comparison.tables import comparison_table
 from inverse_dynamics.evaluation.page import report_run
+from inverse_dynamics.show.page import render_page
 
 if TYPE_CHECKING:
     from inverse_dynamics.comparison.comparison import Comparison
     from inverse_dynamics.show.page import ReportRun
+
+
+def comparison_page(comparison: Comparison) -> str:
+    """The page as text."""
+    return render_page(comparison.title, [report_comparison(comparison)])
 
 
 def report_comparison(comparison: Comparison, title: str = "", *, shown: bool = True) -> ReportRun:

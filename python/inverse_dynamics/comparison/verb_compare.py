@@ -11,8 +11,6 @@ from inverse_dynamics.terminal.values import names
 if TYPE_CHECKING:
     import argparse
 
-    from inverse_dynamics.terminal.screen import Line
-
 PLACE = ("look", 5)
 SUMMARY = "put evaluations of one recording side by side"
 DESCRIPTION = "Put evaluations of one recording side by side: solvers, models, filters."
@@ -49,24 +47,17 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.comparison.comparison import compare
-    from inverse_dynamics.comparison.files import CONTENTS, summary, write_comparison
-    from inverse_dynamics.comparison.tables import comparison_table
+    from inverse_dynamics.comparison.comparison import Comparison, compare
     from inverse_dynamics.evaluation.files import read_evaluation
-    from inverse_dynamics.outputs.files import check_output_directory
     from inverse_dynamics.terminal.screen import show
-    from inverse_dynamics.terminal.tables import on_screen
 
     out, overwrite = arguments.out, arguments.overwrite
     if out is not None:
-        check_output_directory(out, overwrite=overwrite, contents=CONTENTS, inputs=arguments.runs)
+        Comparison.check(out, overwrite=overwrite, inputs=arguments.runs)
     comparison = compare([read_evaluation(run) for run in arguments.runs], arguments.labels)
+    lines = [*comparison.lines()]
     if out is not None:
-        write_comparison(comparison, out, overwrite=overwrite, figures=arguments.figures)
-    files = [out / f"comparison.{suffix}" for suffix in arguments.figures] if out else []
-    lines: list[Line] = [
-        on_screen(comparison_table(comparison)),
-        ("figure", files),
-        ("page", [out / "report.html"] if out else []),
-    ]
-    show(arguments, summary(comparison), [out], lines)
+        comparison.save(out, overwrite=overwrite, figures=arguments.figures)
+        figures = [out / f"comparison.{suffix}" for suffix in arguments.figures]
+        lines += [("figure", figures), ("page", out / "report.html")]
+    show(arguments, comparison.numbers(), [out], lines)

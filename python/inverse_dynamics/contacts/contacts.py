@@ -27,6 +27,9 @@ from inverse_dynamics.contact import (
     VelocitySource,
     contact_thresholds,
 )
+from inverse_dynamics.contacts.figure import contact_figure
+from inverse_dynamics.contacts.page import contact_page
+from inverse_dynamics.contacts.tables import contact_lines, contact_numbers
 from inverse_dynamics.errors import EvaluationError, InvalidParameterError
 from inverse_dynamics.evaluation.evaluation import (
     Evaluation,
@@ -38,10 +41,12 @@ from inverse_dynamics.evaluation.evaluation import (
 from inverse_dynamics.evaluation.run import RunOptions, of_run
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.model_errors import read_model_errors
+from inverse_dynamics.show.result import PAGE, SERIES, ResultDirectory, files_of
 from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from typing import Any
 
     from typing_extensions import Unpack
 
@@ -96,12 +101,15 @@ class Contact:
     unseen: int | None = None  # directions of a wrench that can't be observed, the most during it
 
 
-@dataclass(frozen=True)
-class Contacts:
+@dataclass(frozen=True, repr=False)
+class Contacts(ResultDirectory):
     """External torques of a recording and its contacts. N samples, n joints; order of the chain.
 
     All is what the robot exerts on its surroundings.
     """
+
+    contents = files_of("contacts.json", "contacts", SERIES, PAGE)
+    numbers, lines, plot, page = contact_numbers, contact_lines, contact_figure, contact_page
 
     evaluation: Evaluation
     estimator: str  # name of its class
@@ -122,6 +130,16 @@ class Contacts:
     blind: tuple[str, ...] = ()  # joints whose thresholds exceed their effort limits
     quiet_part: tuple[float, float] | None = None  # from, to [s], if the thresholds are from there
     notes: tuple[str, ...] = ()
+
+    def inputs(self) -> tuple[Path | None, ...]:
+        """The recording and the robot's files."""
+        return self.evaluation.bag, *self.evaluation.robot.files
+
+    def arrays(self) -> dict[str, Any]:
+        """Of each sample."""
+        names = ["time", "torques", "valid", "contact"]
+        names += ["wrenches", "unseen"] if self.wrenches is not None else []
+        return {name: getattr(self, name) for name in names}
 
 
 class ContactOptions(RunOptions, total=False):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.contacts.contacts import Contacts
 
 
-def render_contacts(contacts: Contacts) -> str:
+def contact_page(contacts: Contacts) -> str:
     """The page as text: external torques between their thresholds."""
     evaluation, thresholds, time = contacts.evaluation, contacts.thresholds, contacts.time
 

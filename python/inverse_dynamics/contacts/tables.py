@@ -1,16 +1,62 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Contacts and their thresholds as tables."""
+"""Contacts and their thresholds as numbers, lines and tables."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from inverse_dynamics.evaluation.tables import heading
+from inverse_dynamics.outputs.plain import objects_of_joints
 from inverse_dynamics.show.tables import ReportTable, of_joints
-from inverse_dynamics.wording import counted
+from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from inverse_dynamics.contacts.contacts import Contact, Contacts
+    from inverse_dynamics.show.result import Line
+
+
+def contact_numbers(contacts: Contacts) -> dict[str, Any]:
+    """Contacts, thresholds and how they came about, for JSON."""
+    evaluation, thresholds = contacts.evaluation, contacts.thresholds
+    names = ("torques", "noise", "correlation_time", "peaks", "level", "scale", "shape")
+    columns = {name: getattr(thresholds, name) for name in names}
+    return {
+        "schema": 1,
+        "bag": evaluation.bag,
+        "topic": evaluation.log.topic,
+        "robot": evaluation.robot.name,
+        "plugin": evaluation.robot.plugin,
+        "estimator": contacts.estimator,
+        "gain": contacts.gain,
+        "tracking": contacts.tracking,
+        "measured_velocities": contacts.measured_velocities,
+        "friction_band": contacts.friction_band,
+        "effort": evaluation.effort.meaning,
+        "quiet": contacts.quiet,
+        "false_alarms_per_hour": thresholds.false_alarms_per_hour,
+        "joints": objects_of_joints(evaluation.joint_names, evaluation.units, columns),
+        "contacts": contacts.contacts,
+        "interruptions": contacts.interruptions,
+        "blind": contacts.blind,
+        "notes": contacts.notes,
+    }
+
+
+def contact_lines(contacts: Contacts) -> list[Line]:
+    """What the screen shows."""
+    none = "none"
+    if contacts.blind:
+        none += f", but {listed([*contacts.blind])} can't tell: thresholds exceed effort limits"
+    return [
+        *heading(contacts.evaluation),
+        ("effort means", contacts.evaluation.effort.summary),
+        ("estimator", f"{contacts.estimator}, {contacts.gain:.3g} 1/s"),
+        ("quiet", contacts.quiet),
+        ("note", contacts.notes),
+        threshold_table(contacts),
+        contact_table(contacts) if contacts.contacts else ("contacts", none),
+    ]
 
 
 def contact_table(contacts: Contacts) -> ReportTable:

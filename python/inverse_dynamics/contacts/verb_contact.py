@@ -14,12 +14,9 @@ from inverse_dynamics.terminal.options import (
     given_overrides,
 )
 from inverse_dynamics.terminal.values import file_name, numbers, positive_number, span
-from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     import argparse
-
-    from inverse_dynamics.contacts.contacts import Contacts
 
 PLACE = ("look", 6)
 SUMMARY = "find what touched the robot, and with which force"
@@ -93,27 +90,16 @@ def declare(options: Options) -> None:
     options.overrides(*SOLVER, *RECORDING)
 
 
-def none_found(contacts: Contacts) -> str:
-    """In words, with the joints that can't tell."""
-    if not contacts.blind:
-        return "none"
-    return f"none, but {listed([*contacts.blind])} can't tell: thresholds exceed effort limits"
-
-
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.contacts.contacts import find_contacts
-    from inverse_dynamics.contacts.files import CONTENTS, summary, write_contacts
-    from inverse_dynamics.contacts.tables import contact_table, threshold_table
-    from inverse_dynamics.outputs.files import check_output_directory
+    from inverse_dynamics.contacts.contacts import Contacts, find_contacts
     from inverse_dynamics.recordings.several_recordings import name_of
-    from inverse_dynamics.terminal.screen import heading, progress_bar, show
-    from inverse_dynamics.terminal.tables import on_screen
+    from inverse_dynamics.terminal.screen import progress_bar, show
 
     robot = chosen_robot(arguments)
     out = arguments.out or Path(f"{name_of(arguments.bag)}_{robot.name}_contacts")
     inputs = (arguments.bag, arguments.quiet_recording, arguments.urdf, *robot.files)
-    check_output_directory(out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs)
+    Contacts.check(out, overwrite=arguments.overwrite, inputs=inputs)
     with progress_bar() as progress:
         contacts = find_contacts(
             arguments.bag,
@@ -127,23 +113,10 @@ def run(arguments: argparse.Namespace) -> None:
             progress=progress,
             **given_overrides(arguments),
         )
-    write_contacts(contacts, out, overwrite=arguments.overwrite, figures=arguments.figures)
-    show(
-        arguments,
-        summary(contacts),
-        [out],
-        [
-            *heading(contacts.evaluation),
-            ("effort means", contacts.evaluation.effort.summary),
-            ("estimator", f"{contacts.estimator}, {contacts.gain:.3g} 1/s"),
-            ("quiet", contacts.quiet),
-            ("note", contacts.notes),
-            on_screen(threshold_table(contacts)),
-            on_screen(contact_table(contacts))
-            if contacts.contacts
-            else ("contacts", none_found(contacts)),
-            ("figure", [out / f"contacts.{suffix}" for suffix in arguments.figures]),
-            ("contacts", out / "contacts.json"),
-            ("page", out / "report.html"),
-        ],
-    )
+    contacts.save(out, overwrite=arguments.overwrite, figures=arguments.figures)
+    files = [
+        ("figure", [out / f"contacts.{suffix}" for suffix in arguments.figures]),
+        ("contacts", out / "contacts.json"),
+        ("page", out / "report.html"),
+    ]
+    show(arguments, contacts.numbers(), [out], [*contacts.lines(), *files])

@@ -15,12 +15,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.comparison import files as comparisons
-from inverse_dynamics.comparison.comparison import compare
-from inverse_dynamics.comparison.files import write_comparison
+from inverse_dynamics.comparison.comparison import Comparison, compare
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.evaluation.evaluation import evaluate
-from inverse_dynamics.evaluation.files import CONTENTS, write_evaluation
+from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
 from inverse_dynamics.installation.ament import DATA_PACKAGE, package_share
 from inverse_dynamics.installation.extras import how_to_install, is_installed
 from inverse_dynamics.outputs.files import Contents, write_text, written_whole
@@ -32,8 +29,6 @@ from inverse_dynamics.robots.robots import RIGID_BODY, load_robot
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from inverse_dynamics.comparison.comparison import Comparison
-    from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.progress import Progress
 
 MARK = "demo.json"
@@ -126,7 +121,7 @@ def run_demo(
                 evaluation = evaluate(real[name], name, progress=progress)
             else:
                 continue
-            write_evaluation(evaluation, target / name, figures=figures, progress=progress)
+            evaluation.save(target / name, figures=figures, progress=progress)
             evaluations[name] = evaluation
         if absent := {TITLES[name]: file for name, file in REAL.items() if name not in real}:
             notes.append(
@@ -138,10 +133,11 @@ def run_demo(
             say("comparing the URDF's rigid bodies with the identified model on the real UR10")
             rigid = evaluate(real["ur10_real"], "ur10_real", plugin=RIGID_BODY, progress=progress)
             # The figure of the comparison shows its torques.
-            write_evaluation(rigid, target / "ur10_real_urdf", figures=(), progress=progress)
+            rigid.save(target / "ur10_real_urdf", figures=(), progress=progress)
             labels = ("identified, with friction", "rigid bodies of the URDF")
             comparison = compare([evaluations["ur10_real"], rigid], labels)
-            write_comparison(comparison, target / "comparison", figures=figures, page=False)
+            (target / "comparison").mkdir()
+            comparison.write(target / "comparison", figures, page=False)
         say("writing the page")
         _write_page(target, evaluations, comparison, notes)
     return Demo(Path(out), evaluations, comparison, tuple(notes))
@@ -163,8 +159,8 @@ def _contents() -> Contents:
     """All files of a demonstration."""
     from inverse_dynamics.simulation import run
 
-    parts = {"comparison": comparisons.CONTENTS, "ur10_real_urdf": CONTENTS}
-    parts |= dict.fromkeys(TITLES, CONTENTS)
+    parts = {"comparison": Comparison.contents, "ur10_real_urdf": Evaluation.contents}
+    parts |= dict.fromkeys(TITLES, Evaluation.contents)
     parts |= {f"{name}_bag": run.CONTENTS for name in SIMULATED}
     files = (
         f"{directory}/{file.replace('{name}', directory)}"

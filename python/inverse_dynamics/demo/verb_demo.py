@@ -47,11 +47,9 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.comparison.tables import comparison_table
     from inverse_dynamics.demo.demo import TITLES, find_recordings, run_demo, summary
     from inverse_dynamics.evaluation.tables import robots_table
     from inverse_dynamics.terminal.screen import Screen, progress_bar, show
-    from inverse_dynamics.terminal.tables import on_screen
 
     console = Screen(stderr=arguments.json)
     with progress_bar() as progress:
@@ -65,9 +63,9 @@ def run(arguments: argparse.Namespace) -> None:
         )
     out, comparison = demo.directory, demo.comparison
     robots = {TITLES[name]: evaluation for name, evaluation in demo.evaluations.items()}
-    lines: list[Line] = [on_screen(robots_table(robots))]
+    lines: list[Line] = [robots_table(robots)]
     if comparison is not None:
-        lines += ["UR10, real: gain by identification", on_screen(comparison_table(comparison))]
+        lines += ["UR10, real: gain by identification", *comparison.lines()]
     lines.append(("note", demo.notes))
     if any(out.glob("*/torques.png")):
         lines.append(("figures", f"{out}/*/torques.png"))

@@ -124,6 +124,9 @@ class Evaluation(Views):
         return sum(e.rmse for e in self.errors) / len(self.errors)
 
 
+write_evaluation = Evaluation.save
+
+
 @checked
 def evaluate(
     bag: Path | str | Mapping[str, Any] | DataFrame,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An evaluation as a directory of files, and back: `ids evaluate --help` lists the files."""
+"""An evaluation straight into a directory of files, and back: `ids evaluate --help` lists the files."""
 
 from __future__ import annotations
 
@@ -12,17 +12,16 @@ import numpy as np
 
 from inverse_dynamics._core import Accelerations, Effort, JointError, Verdict
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.evaluation.accelerations import MASKS
 from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
 from inverse_dynamics.evaluation.run import RunOptions, overridden
+from inverse_dynamics.evaluation.views import RECORDED, SCHEMA
 from inverse_dynamics.installation.extras import require
-from inverse_dynamics.outputs.files import Contents, write_text, written_whole
-from inverse_dynamics.outputs.plain import json_text, read_back
+from inverse_dynamics.outputs.files import written_whole
+from inverse_dynamics.outputs.plain import read_back
 from inverse_dynamics.progress import no_progress
-from inverse_dynamics.recordings.bags import write_torques
 from inverse_dynamics.recordings.joint_log import check_storage
 from inverse_dynamics.robots.robots import Robot, load_robot
-from inverse_dynamics.show.plots import FORMATS
+from inverse_dynamics.show.result import PAGE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,63 +31,10 @@ if TYPE_CHECKING:
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Storage
 
-SCHEMA = 4
-MARK = "evaluation.json"
-PAGE = "report.html"
+MARK = Evaluation.contents.mark
 MARK_OF_SEVERAL = "recordings.json"  # see many_evaluations.py
+_PER_JOINT = ("q", "qd", "effort", "qdd", "measured", "computed", "band")
 _MOST_ON_A_PAGE = 3_000_000  # samples: 1 s, 170 MiB; 60 bytes more for each
-
-CONTENTS = Contents(
-    MARK,
-    (
-        MARK,
-        "metrics.json",
-        "series.npz",
-        *(f"torques.{suffix}" for suffix in FORMATS),
-        "bag/metadata.yaml",
-        "bag/bag.db3*",
-        "bag/bag.mcap",
-    ),
-    added=("series.csv", "series.parquet", PAGE),
-)
-"""Files of a result; `ids export` and `ids report` add theirs."""
-
-COMPUTED_TOPIC = "/torques"
-
-
-def write_evaluation(
-    evaluation: Evaluation,
-    directory: Path | str,
-    *,
-    overwrite: bool = False,
-    storage: Storage | None = None,
-    figures: Sequence[str] = ("png",),
-    progress: Progress = no_progress,
-) -> None:
-    """Write all files of an evaluation, or none of them.
-
-    Parameters
-    ----------
-    directory
-        To write.
-    overwrite
-        Replace an older result.
-    storage
-        "sqlite3" or "mcap"; by default that of the recording.
-    figures
-        Of "png", "svg", "pdf"; none of them: no figure.
-
-    Raises
-    ------
-    UserError
-        OutputError, BagError.
-    """
-    check_writing(storage, figures)
-    inputs = (evaluation.bag, *evaluation.robot.files)
-    with written_whole(
-        Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
-    ) as target:
-        _write(evaluation.explained, target, storage, figures, progress)
 
 
 def evaluate_into(
@@ -103,7 +49,7 @@ def evaluate_into(
     progress: Progress = no_progress,
     **options: Unpack[RunOptions],
 ) -> Evaluation:
-    """evaluate() and write_evaluation() of a recording that needn't fit into memory; with figures, a page too.
+    """evaluate() and save() of a recording that needn't fit into memory; with figures, a page too.
 
     parquet: name of the recording in series.parquet; None: no such file. options: those of evaluate().
     The arrays of the result lie in unnamed files, in memory only where they are looked at.
@@ -114,10 +60,10 @@ def evaluate_into(
     robot = robot if isinstance(robot, Robot) else load_robot(robot)
     inputs = (Path(bag), *overridden(robot, options).files)
     with written_whole(
-        Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
+        Path(directory), overwrite=overwrite, contents=Evaluation.contents, inputs=inputs
     ) as target:
         evaluation = evaluate(bag, robot, progress=progress, scratch=target, **options)
-        _write(evaluation, target, storage, figures, progress)
+        evaluation.write(target, figures, storage=storage, progress=progress)
         if parquet is not None:
             from inverse_dynamics.evaluation.exports import export_series
 
@@ -144,31 +90,8 @@ def check_writing(storage: str | None, figures: Sequence[str], *, parquet: bool 
         require("a table", "pyarrow")
 
 
-def _write(
-    evaluation: Evaluation,
-    target: Path,
-    storage: Storage | None,
-    figures: Sequence[str],
-    progress: Progress,
-) -> None:
-    from inverse_dynamics.evaluation.figure import save_torque_figure
-
-    storage = storage or evaluation.log.storage
-    torques = (evaluation.computed, evaluation.measured)
-    write_torques(
-        target / "bag", storage, COMPUTED_TOPIC, evaluation.log, torques, progress=progress
-    )
-    np.savez(target / "series.npz", **_series(evaluation))
-    write_text(target / "metrics.json", json_text(metrics(evaluation)))
-    write_text(target / MARK, json_text(_about(evaluation)))
-    if figures:
-        progress("plotting", 0, 1)
-        save_torque_figure(evaluation, *(target / f"torques.{suffix}" for suffix in figures))
-        progress("plotting", 1, 1)
-
-
 def read_evaluation(directory: Path | str) -> Evaluation:
-    """An evaluation that write_evaluation() wrote. Raises OutputError."""
+    """An evaluation that save() wrote. Raises OutputError."""
     directory = Path(directory)
     _check_marked(directory)
     try:
@@ -194,7 +117,7 @@ def _read_back(
     about: dict[str, Any], metrics: dict[str, Any], arrays: dict[str, Any]
 ) -> Evaluation:
     """The evaluation that files hold. Raises ValueError, TypeError, KeyError."""
-    recorded = {name: arrays[name] for name in _RECORDED}
+    recorded = {name: arrays[name] for name in RECORDED}
     verdict = about["effort"]["verdict"]
     parts = {
         **arrays,
@@ -209,7 +132,7 @@ def _read_back(
     }
     evaluation: Evaluation = read_back(Evaluation, parts, "evaluation")
     samples, joints = len(evaluation.log.header_stamps), len(evaluation.log.joint_names)
-    for name, array in _series(evaluation).items():
+    for name, array in evaluation.arrays().items():
         shape = (samples, joints) if name in _PER_JOINT else (samples,)
         if array.shape != shape or not samples:
             raise ValueError(f"{name}: expected the shape {shape}, got {array.shape}")
@@ -237,55 +160,3 @@ def _check_marked(directory: Path) -> None:
     if not (directory / MARK).is_file():
         found = f"holds no {MARK}" if directory.is_dir() else "no such directory"
         raise OutputError(f"{directory}: {found}; expected one written by `ids evaluate`")
-
-
-_RECORDED = ("header_stamps", "receive_stamps", "q", "qd", "effort")
-_PER_JOINT = ("q", "qd", "effort", "qdd", "measured", "computed", "band")
-
-
-def _series(evaluation: Evaluation) -> dict[str, Any]:
-    """Arrays of series.npz, not copied."""
-    computed = ["time", "qdd", "measured", "computed"]
-    computed += [] if evaluation.band is None else ["band"]
-    return {
-        **{name: getattr(evaluation.log, name) for name in _RECORDED},
-        **{name: getattr(evaluation, name) for name in computed},
-        **{name: getattr(evaluation.samples, name) for name in MASKS},
-    }
-
-
-def metrics(evaluation: Evaluation) -> dict[str, Any]:
-    """For people and scripts: errors, what was evaluated, notes and the likely cause of the errors; for JSON."""
-    return {
-        "robot": evaluation.robot.name,
-        "plugin": evaluation.robot.plugin,
-        "friction": evaluation.robot.friction,
-        "bag": str(evaluation.bag),
-        "samples": len(evaluation.log),
-        "accelerations": evaluation.accelerations,
-        "effort": evaluation.effort,
-        "joints": evaluation.errors,
-        "mean_rmse": evaluation.mean_rmse if len(set(evaluation.units)) == 1 else None,
-        **({} if evaluation.band is None else {"in_band": evaluation.coverage}),
-        "kept": {
-            "samples": len(evaluation.log) - evaluation.samples.left_out,
-            "joints": evaluation.errors_of_kept,
-        },
-        "notes": evaluation.notes,
-        "diagnosis": [{**vars(c), "reference": c.reference} for c in evaluation.diagnosis],
-    }
-
-
-def _about(evaluation: Evaluation) -> dict[str, Any]:
-    """Content of evaluation.json: all that metrics.json and series.npz lack."""
-    names = ("robot", "bag", "joint_names", "units", "accelerations", "effort", "notes")
-    recording = ("joint_names", "frame_id", "clock", "topic", "storage", "effort_is", "notes")
-    samples = evaluation.samples
-    return {
-        "schema": SCHEMA,
-        **{name: getattr(evaluation, name) for name in names},
-        "samples": len(evaluation.log),
-        "duration": evaluation.log.duration,
-        "sampling": {"period": samples.period, "jitter": samples.jitter},
-        "recording": {name: getattr(evaluation.log, name) for name in recording},
-    }

@@ -22,7 +22,7 @@ from inverse_dynamics.arguments import checked
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation import files as evaluations
 from inverse_dynamics.evaluation.cluster import check_stopped, on_cluster
-from inverse_dynamics.evaluation.files import PAGE
+from inverse_dynamics.evaluation.evaluation import Evaluation
 from inverse_dynamics.evaluation.run import RunOptions, check_options, of_run, overridden
 from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
 from inverse_dynamics.evaluation.workers import Failure, cores, in_processes
@@ -32,6 +32,7 @@ from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.several_recordings import named_recordings
 from inverse_dynamics.recordings.time_window import TimeWindow
 from inverse_dynamics.robots.robots import Robot, load_robot
+from inverse_dynamics.show.result import PAGE
 from inverse_dynamics.wording import counted, printable
 
 if TYPE_CHECKING:
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
 
     from typing_extensions import Unpack
 
-    from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Storage
 
@@ -47,7 +47,7 @@ SCHEMA = 1
 MARK = evaluations.MARK_OF_SEVERAL
 OWN_FILES = (MARK, "summary.csv", PAGE)
 
-_OF_EACH = (*evaluations.CONTENTS.files, *evaluations.CONTENTS.added)
+_OF_EACH = (*Evaluation.contents.files, *Evaluation.contents.added)
 CONTENTS = Contents(MARK, (*OWN_FILES, *(f"*/{file}" for file in _OF_EACH)))
 
 Row = dict[str, Any]
@@ -110,7 +110,7 @@ class _Task:
 class ManyOptions(RunOptions, total=False):
     """What is written of each recording.
 
-    storage, figures: as in write_evaluation(). Without figures no page of a recording either, nor of one with more than
+    storage, figures: as in Evaluation.save(). Without figures no page of a recording either, nor of one with more than
     a million samples. parquet: write NAME/series.parquet too.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of evaluations as tables."""
+"""Evaluations as lines and tables."""
 
 from __future__ import annotations
 
@@ -17,6 +17,22 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.evaluation.summary import EvaluationSummary
+    from inverse_dynamics.show.result import Line
+
+
+def heading(
+    evaluation: Evaluation, samples: int | None = None, duration: float | None = None
+) -> list[Line]:
+    """Robot, solver and recording. samples, duration [s]: those that are used; None: all."""
+    robot, log = evaluation.robot, evaluation.log
+    samples = len(log) if samples is None else samples
+    duration = log.duration if duration is None else duration
+    source = ", ".join(filter(None, (str(evaluation.bag), log.topic)))
+    return [
+        ("", robot.description or robot.name),
+        ("solver", f"{robot.plugin}{'' if robot.friction else ', friction left out'}"),
+        ("recording", f"{source}: {samples} samples, {duration:.1f} s"),
+    ]
 
 
 def evaluation_table(evaluation: Evaluation) -> ReportTable:

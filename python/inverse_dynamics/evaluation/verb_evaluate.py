@@ -126,11 +126,9 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any]) -> None:
-    from inverse_dynamics.evaluation.files import PAGE, evaluate_into, metrics
-    from inverse_dynamics.evaluation.tables import evaluation_table
+    from inverse_dynamics.evaluation.files import evaluate_into
     from inverse_dynamics.recordings.several_recordings import name_of
-    from inverse_dynamics.terminal.screen import heading, progress_bar, show
-    from inverse_dynamics.terminal.tables import on_screen
+    from inverse_dynamics.terminal.screen import progress_bar, show
 
     (bag,) = arguments.bags
     out = arguments.out or Path(f"{name_of(bag)}_{robot.name}")
@@ -140,30 +138,20 @@ def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any
     drawn = [str(out / f"torques.{suffix}") for suffix in arguments.figures]
     if not drawn and not is_installed("matplotlib"):
         drawn = [f"none, it needs matplotlib: {how_to_install('matplotlib')}"]
-    show(
-        arguments,
-        metrics(evaluation),
-        [out],
-        [
-            *heading(evaluation),
-            ("accelerations", evaluation.accelerations.summary),
-            ("effort means", evaluation.effort.summary),
-            ("note", evaluation.notes),
-            on_screen(evaluation_table(evaluation)),
-            ("page", [str(page)] if (page := out / PAGE).is_file() else []),
-            ("figure", drawn),
-            ("bag", f"{out / 'bag'}: /torques (computed), /torques_gt (measured)"),
-            ("errors", out / "metrics.json"),
-        ],
-    )
+    files: list[Line] = [
+        ("page", [page] if (page := out / "report.html").is_file() else []),
+        ("figure", drawn),
+        ("bag", f"{out / 'bag'}: /torques (computed), /torques_gt (measured)"),
+        ("errors", out / "metrics.json"),
+    ]
+    show(arguments, evaluation.numbers(), [out], [*evaluation.lines(), *files])
 
 
 def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any]) -> None:
     from inverse_dynamics.errors import PartialError
     from inverse_dynamics.evaluation.many_evaluations import evaluate_many, failures_text, summary
     from inverse_dynamics.evaluation.tables import recordings_table
-    from inverse_dynamics.terminal.screen import progress_bar, show, title
-    from inverse_dynamics.terminal.tables import on_screen
+    from inverse_dynamics.terminal.screen import progress_bar, show
 
     with progress_bar() as progress:
         result = evaluate_many(
@@ -177,9 +165,9 @@ def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, An
             **options,
         )
     lines: list[Line] = [
-        title(robot),
+        ("", robot.description or robot.name),
         ("solver", result.summaries[0].plugin),
-        on_screen(recordings_table(result.summaries)),
+        recordings_table(result.summaries),
         ("page", result.directory / "report.html"),
         ("summary", result.directory / "summary.csv"),
         ("results", f"{result.directory}/NAME"),

@@ -3,7 +3,7 @@
 
     result = excite("ur10_simulated", given=["recording"])
     result.deviation["motion"]                        # (n,) N m, after it
-    write_excitation(result, "motion.yaml")
+    result.save("motion.yaml")
 
 What is searched for, and how: simulation/excitation.py.
 """
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,17 +25,18 @@ from inverse_dynamics.excitation.excitation import (
     motion_gram,
     optimise_excitation,
 )
+from inverse_dynamics.excitation.files import message_text, motion_text
 from inverse_dynamics.excitation.information import sample_weight
-from inverse_dynamics.outputs.files import check_output_file, files_written_whole, write_text
+from inverse_dynamics.excitation.tables import excitation_lines, excitation_numbers
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import Robot, load_robot
-from inverse_dynamics.show.tables import of_joints
+from inverse_dynamics.show.result import ResultFiles
 from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.limits import MotionLimits
 from inverse_dynamics.simulation.modelled import description_of, simulated_robot
-from inverse_dynamics.simulation.trajectory import read_trajectory, trajectory_text
+from inverse_dynamics.simulation.trajectory import read_trajectory
 from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
@@ -45,11 +46,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.excitation.information import Unknowns
     from inverse_dynamics.progress import Progress
-    from inverse_dynamics.show.tables import ReportTable
     from inverse_dynamics.simulation.model import SimulatedRobot
-    from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
-LEAD_IN = 3.0  # s from the start of the trajectory to send to its first point
 _TEST_STATES = 1000
 _BAND = 1.96  # half the width of the 95 % band of a normal distribution, in standard deviations
 _REWEIGHTED = 4  # times that the noise is taken from the residuals
@@ -57,8 +55,8 @@ _GIVEN_STEP = 0.02  # s between samples of recordings that are used
 _HARDLY = 0.05  # part of the range of positions: less motion is hardly any
 
 
-@dataclass(frozen=True)
-class ExcitationResult:
+@dataclass(frozen=True, repr=False)
+class ExcitationResult(ResultFiles):
     """A motion, and the uncertainty after it. n joints, in the order of the chain.
 
     deviation: N m (prismatic N), (n,) each: standard deviation of the torques that are predicted
@@ -66,6 +64,9 @@ class ExcitationResult:
     "description": without a recording; "given": after the recordings that were given; "stored":
     after them and the stored motion of the robot, for the same time; "motion": after them and the new one.
     """
+
+    names = ("{stem}_joint_trajectory.yaml",)
+    numbers, lines = excitation_numbers, excitation_lines
 
     robot: Robot
     joint_names: tuple[str, ...]  # of the recordings and controllers
@@ -78,6 +79,40 @@ class ExcitationResult:
     greatest: Floats  # (3, n) greatest velocity, acceleration and torque, share of each limit
     travel: Floats  # (n, 2) lowest and highest position
     notes: tuple[str, ...]
+    step: float | None = None  # s between points of the message to send; None: at the waypoints
+
+    def inputs(self) -> tuple[Path | None, ...]:
+        """The robot's files."""
+        return self.robot.files
+
+    def texts(self, files: Sequence[Path]) -> tuple[str, str]:
+        """The motion, and the message to send."""
+        message = message_text(self.excitation.trajectory, self.joint_names, self.step)
+        return motion_text(self), message
+
+
+def write_excitation(
+    result: ExcitationResult,
+    out: Path | str,
+    *,
+    overwrite: bool = False,
+    step: float | None = None,
+) -> None:
+    """Write the motion for `ids simulate` and the message to send, both or none.
+
+    Parameters
+    ----------
+    result, out, overwrite
+        As ExcitationResult.save() takes them.
+    step
+        s between the message's points; by default at the waypoints.
+
+    Raises
+    ------
+    UserError
+        OutputError.
+    """
+    replace(result, step=step).save(out, overwrite=overwrite)
 
 
 def excite(
@@ -161,121 +196,6 @@ def excite(
         travel=travel,
         notes=(*simulated.chain.notes, *notes, *found.notes),
     )
-
-
-def check_output(out: Path, robot: Robot, given: Sequence[Path], *, overwrite: bool) -> None:
-    """Raise OutputError unless the files may be written."""
-    for file in (out, sending_file(out)):
-        check_output_file(file, overwrite=overwrite, inputs=(*given, *robot.files))
-
-
-def sending_file(out: Path) -> Path:
-    """File of the trajectory to send: motion_joint_trajectory.yaml beside motion.yaml."""
-    return out.with_name(f"{out.stem}_joint_trajectory.yaml")
-
-
-def summary(result: ExcitationResult) -> dict[str, Any]:
-    """Motion of each joint and uncertainty after it, for JSON."""
-    names = ("velocity_share", "acceleration_share", "torque_share")
-    return {
-        "robot": result.robot.name,
-        "duration": result.excitation.trajectory.duration,
-        "condition_number": result.excitation.condition_number,
-        "noise_source": result.noise_source,
-        "joints": [
-            {
-                "joint": joint,
-                "unit": unit,
-                "lower": result.travel[j, 0],
-                "upper": result.travel[j, 1],
-                **dict(zip(names, result.greatest[:, j], strict=True)),
-                "noise": result.noise[j],
-                "deviation": {name: values[j] for name, values in result.deviation.items()},
-            }
-            for j, (joint, unit) in enumerate(zip(result.joint_names, result.units, strict=True))
-        ],
-        "notes": result.notes,
-    }
-
-
-_AFTER = {"description": "before", "given": "given", "stored": "stored", "motion": "after"}
-
-
-def excitation_table(result: ExcitationResult) -> ReportTable:
-    """Motion of each joint, and uncertainty of its predicted torque before and after."""
-    speed, acceleration, torque = np.rint(100 * result.greatest).astype(int)
-    columns = {"from": result.travel[:, 0], "to": result.travel[:, 1]}
-    columns |= {"speed": speed, "acc.": acceleration, "torque": torque}
-    columns |= {_AFTER[name]: values for name, values in result.deviation.items()}
-    note = (
-        "speed, acceleration (acc.), torque: greatest values in % of their limits; then the standard "
-        "deviation of predicted torques, mean over random states within the limits: before any recording"
-        + (", after the given recordings" if "given" in result.deviation else "")
-        + (", after the stored motion for the same time" if "stored" in result.deviation else "")
-        + ", after this motion"
-    )
-    return of_joints("", result.joint_names, result.units, columns, note)
-
-
-def write_excitation(
-    result: ExcitationResult,
-    out: Path | str,
-    *,
-    overwrite: bool = False,
-    step: float | None = None,
-) -> None:
-    """Write the motion for `ids simulate` and the message to send, both or none.
-
-    Parameters
-    ----------
-    out
-        The file of the motion, .yaml; the message goes beside it.
-    overwrite
-        Replace older ones.
-    step
-        s between the message's points; by default at the waypoints.
-
-    Raises
-    ------
-    UserError
-        OutputError.
-    """
-    out = Path(out)
-    check_output(out, result.robot, (), overwrite=overwrite)
-    trajectory = result.excitation.trajectory
-    source = f"Exciting motion of {result.robot.name} for "
-    if result.options.payload:  # the rest of the arm rests
-        source += "a payload, made by ids excite."
-    else:
-        condition = result.excitation.condition_number
-        source += f"identification, made by ids excite: condition number of the base regressor {condition:.4g}."
-    with files_written_whole([out, sending_file(out)]) as (motion, message):
-        write_text(motion, trajectory_text(trajectory, source))
-        write_text(message, message_text(trajectory, result.joint_names, step))
-
-
-def message_text(
-    trajectory: WaypointTrajectory, joint_names: Sequence[str], step: float | None = None
-) -> str:
-    """A trajectory_msgs/JointTrajectory as YAML, as `ros2 topic pub` takes it.
-
-    The first point, where the arm is at rest, comes after LEAD_IN. Points at the waypoints are
-    enough for a controller that joins points by polynomials of the fifth order.
-    """
-    time = trajectory.times
-    if step is not None:
-        time = np.linspace(0.0, trajectory.duration, 1 + int(np.ceil(trajectory.duration / step)))
-    lines = ["header: {stamp: {sec: 0, nanosec: 0}, frame_id: ''}"]
-    lines += [f"joint_names: [{', '.join(joint_names)}]", "points:"]
-    for t, *state in zip(time, *trajectory.at(time), strict=True):
-        stamp = round((LEAD_IN + t) * 1e9)
-        lines += [
-            f"{'-' if key == 'positions' else ' '} {key}: [{', '.join(f'{v:.9g}' for v in values)}]"
-            for key, values in zip(("positions", "velocities", "accelerations"), state, strict=True)
-        ]
-        sec, nanosec = divmod(stamp, 10**9)
-        lines.append(f"  time_from_start: {{sec: {sec}, nanosec: {nanosec}}}")
-    return "\n".join(lines) + "\n"
 
 
 def _read(recording: Path | str, robot: Robot, progress: Progress) -> Evaluation:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -108,20 +109,13 @@ def _declare_limits(limits: Options) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.excitation.excitation import ExcitationOptions
-    from inverse_dynamics.excitation.excite import (
-        check_output,
-        excitation_table,
-        excite,
-        sending_file,
-        summary,
-        write_excitation,
-    )
+    from inverse_dynamics.excitation.excite import ExcitationResult, excite
     from inverse_dynamics.robots.robots import with_changes
-    from inverse_dynamics.terminal.screen import announce, progress_bar, show, title
-    from inverse_dynamics.terminal.tables import on_screen
+    from inverse_dynamics.terminal.screen import announce, progress_bar, show
 
     robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
-    check_output(arguments.out, robot, arguments.given, overwrite=arguments.overwrite)
+    out, overwrite, inputs = arguments.out, arguments.overwrite, (*arguments.given, *robot.files)
+    ExcitationResult.check(out, overwrite=overwrite, inputs=inputs)
     names = ("duration", "share", "time_to_full_speed", "clearance", "table", "payload")
     given = {name: getattr(arguments, name) for name in names}
     options = ExcitationOptions(
@@ -136,22 +130,7 @@ def run(arguments: argparse.Namespace) -> None:
             say=announce,
             progress=progress,
         )
-    write_excitation(result, arguments.out, overwrite=arguments.overwrite, step=arguments.step)
-    files = [arguments.out, sending_file(arguments.out)]
-    found = result.excitation
-    motion = f"{found.trajectory.duration:g} s"
-    if not options.payload:  # else most of the arm rests
-        motion += f", condition number of the base regressor {found.condition_number:.1f}"
-    show(
-        arguments,
-        summary(result),
-        files,
-        [
-            title(result.robot),
-            ("note", result.notes),
-            ("motion", motion),
-            ("noise", result.noise_source),
-            on_screen(excitation_table(result)),
-            ("written", ", ".join(map(str, files))),
-        ],
-    )
+    replace(result, step=arguments.step).save(out, overwrite=overwrite)
+    files = ExcitationResult.files(out)
+    written = ("written", ", ".join(map(str, files)))
+    show(arguments, result.numbers(), files, [*result.lines(), written])

@@ -45,8 +45,9 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.evaluation.exports import export_series
-    from inverse_dynamics.evaluation.files import CONTENTS, read_evaluation
+    from inverse_dynamics.evaluation.files import read_evaluation
     from inverse_dynamics.installation.extras import require
     from inverse_dynamics.outputs.files import check_output_file
     from inverse_dynamics.terminal.screen import Screen, progress_bar
@@ -54,7 +55,9 @@ def run(arguments: argparse.Namespace) -> None:
     require("a table", "pyarrow")
     files, overwrite = _files(arguments), arguments.overwrite
     for file in files:  # before the work
-        check_output_file(file, overwrite=overwrite, inputs=arguments.runs, results=CONTENTS)
+        check_output_file(
+            file, overwrite=overwrite, inputs=arguments.runs, results=Evaluation.contents
+        )
     with progress_bar() as progress:
         for directory, file in zip(arguments.runs, files, strict=True):
             evaluation = read_evaluation(directory)

@@ -96,24 +96,8 @@ def write_trajectory_torques(
         except Exception as error:  # writers raise more than they document
             raise unwritable(out, error) from error
         move_up(bag)
-        write_text(directory / MARK, json_text(summary(result)))
+        write_text(directory / MARK, json_text(result.numbers()))
     return notes
-
-
-def summary(result: TrajectoryTorques) -> dict[str, Any]:
-    """Solver, energy, and load of each joint, for JSON; a missing limit is null."""
-    robot = result.robot
-    return {
-        "schema": 1,
-        "bag": str(result.path),
-        "topic": result.topic,
-        "robot": robot.name,
-        "plugin": robot.plugin,
-        "friction": robot.friction,
-        "gravity": robot.gravity,
-        **result.energy.numbers,
-        "joints": result.loads,
-    }
 
 
 def _write_bag(result: TrajectoryTorques, path: Path, progress: Progress) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ import numpy as np
 
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
+from inverse_dynamics.feedforward.tables import load_lines, load_numbers
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.csv_table import is_csv
 from inverse_dynamics.recordings.joint_trajectories import JointTrajectory, read_joint_trajectories
@@ -29,6 +30,7 @@ from inverse_dynamics.recordings.times import check_seconds
 from inverse_dynamics.recordings.vocabulary import ACCELERATION, POSITION, VELOCITY
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import Robot, load_robot
+from inverse_dynamics.show.result import Result
 from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
@@ -56,9 +58,11 @@ class JointLoad:
     passed_trajectory: int | None = None
 
 
-@dataclass(frozen=True)
-class TrajectoryTorques:
+@dataclass(frozen=True, repr=False)
+class TrajectoryTorques(Result):
     """Torques of the trajectories of a file. n joints, in the order of the chain."""
+
+    numbers, lines = load_numbers, load_lines
 
     path: Path
     robot: Robot

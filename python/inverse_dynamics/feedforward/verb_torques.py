@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.terminal.options import SOLVER, TABLE, Options, chosen_robot, given_overrides
-from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
     import argparse
@@ -55,41 +55,19 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.feedforward.files import check_output
+    from inverse_dynamics.feedforward.files import check_output, write_trajectory_torques
+    from inverse_dynamics.feedforward.trajectory_torques import trajectory_torques
     from inverse_dynamics.robots.robots import with_changes
+    from inverse_dynamics.robots.solvers import description_notes
+    from inverse_dynamics.terminal.screen import progress_bar, show
 
     robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
-    check_output(arguments.trajectory, arguments.out, robot, overwrite=arguments.overwrite)
-
-    from inverse_dynamics.feedforward.files import summary, write_trajectory_torques
-    from inverse_dynamics.feedforward.tables import load_table
-    from inverse_dynamics.feedforward.trajectory_torques import trajectory_torques
-    from inverse_dynamics.robots.solvers import description_notes
-    from inverse_dynamics.terminal.screen import progress_bar, show, title
-    from inverse_dynamics.terminal.tables import on_screen
-
+    path, out, overwrite = arguments.trajectory, arguments.out, arguments.overwrite
+    check_output(path, out, robot, overwrite=overwrite)
     with progress_bar() as progress:
-        result = trajectory_torques(
-            arguments.trajectory, robot, topic=arguments.topic or "", progress=progress
-        )
-        notes = write_trajectory_torques(
-            result, arguments.out, overwrite=arguments.overwrite, progress=progress
-        )
-    notes = (*result.notes, *notes)
-    if arguments.urdf is not None:
-        notes = (*notes, *description_notes(robot, "effort limits"))
-    points = counted(sum(map(len, result.times)), "point")
-    show(
-        arguments,
-        {**summary(result), "notes": notes},
-        [arguments.out],
-        [
-            title(robot),
-            ("solver", f"{robot.plugin}{'' if robot.friction else ', friction left out'}"),
-            ("trajectories", f"{len(result.times)}, with {points} together"),
-            ("energy", str(result.energy)),
-            ("note", notes),
-            on_screen(load_table(result)),
-            ("written", arguments.out),
-        ],
-    )
+        result = trajectory_torques(path, robot, topic=arguments.topic or "", progress=progress)
+        left_out = write_trajectory_torques(result, out, overwrite=overwrite, progress=progress)
+    missing = description_notes(robot, "effort limits") if arguments.urdf else ()
+    result = replace(result, notes=(*result.notes, *left_out, *missing))
+    numbers = {**result.numbers(), "notes": result.notes}
+    show(arguments, numbers, [out], [*result.lines(), ("written", out)])

@@ -11,29 +11,22 @@ arm.html         the report's page
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from inverse_dynamics import _core
-from inverse_dynamics.errors import OutputError
-from inverse_dynamics.identification.page import render_identification
 from inverse_dynamics.identification.result import model_file_text
-from inverse_dynamics.identification.tables import held_out_table
 from inverse_dynamics.identification.uncertainty import uncertainty_text
-from inverse_dynamics.outputs.files import check_output_file, files_written_whole, write_text
 from inverse_dynamics.outputs.plain import json_text, plain
-from inverse_dynamics.robots.model_errors import model_errors_file
 from inverse_dynamics.robots.robot_files import robot_text
 from inverse_dynamics.robots.robots import RIGID_BODY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
     from inverse_dynamics.identification.hold_out import HoldOut
     from inverse_dynamics.identification.result import Identification
-    from inverse_dynamics.show.tables import ReportTable
 
 SCHEMA = 1
 
@@ -48,45 +41,6 @@ class IdentificationFiles(NamedTuple):
     page: Path
 
 
-def identification_files(out: Path | str) -> IdentificationFiles:
-    """The files that belong to the run configuration `out`. Raises OutputError."""
-    out = Path(out)
-    if out.suffix not in (".yaml", ".yml"):
-        raise OutputError(
-            f"{out}: expected a name ending in .yaml, as --robot takes it; name another file with --out"
-        )
-    model = out.with_name(f"{out.stem}_model{out.suffix}")
-    return IdentificationFiles(
-        out,
-        model,
-        model_errors_file(model),
-        out.with_suffix(".json"),
-        out.with_suffix(".html"),
-    )
-
-
-def check_identification_files(
-    out: Path | str,
-    *,
-    overwrite: bool = False,
-    more: Mapping[str, Path] | None = None,
-    inputs: tuple[Path | None, ...] = (),
-) -> IdentificationFiles:
-    """The files, which may be written. more: others, by option. Raises OutputError."""
-    files = identification_files(out)
-    named = [("--out", file) for file in files] + list((more or {}).items())
-    for option, file in named:
-        check_output_file(file, overwrite=overwrite, option=option, inputs=inputs)
-    places = [file.absolute() for _, file in named]
-    for (option, file), place in reversed(list(zip(named, places, strict=True))):
-        if places.count(place) > 1:
-            raise OutputError(
-                f"{file}: expected a file of its own for {option}, got one of the other results; "
-                "name another file"
-            )
-    return files
-
-
 def write_identification(
     found: Identification,
     out: Path | str,
@@ -95,18 +49,12 @@ def write_identification(
     more: Mapping[Path, str] | None = None,
     tests: Sequence[HoldOut] = (),
 ) -> IdentificationFiles:
-    """Write all files of a model, or none of them: those that `ids identify --help` lists.
+    """Write all files of a model, or none of them, and give their names.
 
     Parameters
     ----------
-    found
-        The model.
-    out
-        The run configuration, a .yaml file; the others have its name.
-    overwrite
-        Replace older files.
-    more
-        Texts of further files, by file.
+    found, out, overwrite, more
+        As Identification.save() takes them.
     tests
         Errors on recordings that nothing was fitted to.
 
@@ -115,26 +63,22 @@ def write_identification(
     UserError
         OutputError.
     """
-    more = more or {}
-    inputs = (*found.recordings, *found.robot.files)
-    options = {f"{file}": file for file in more}
-    files = check_identification_files(out, overwrite=overwrite, more=options, inputs=inputs)
-    name = files.robot.stem
-    model = model_file_text(found, f"{name}_model")
-    texts = {
-        files.model: model,
-        files.uncertainty: uncertainty_text(found, model),
-        files.figures: json_text(summary(found, tests)),
-        files.page: render_identification(found, [_table_of(found, test) for test in tests]),
-        **more,
-        files.robot: _run_configuration(found, files),  # last: it names the model
-    }
-    with files_written_whole(list(texts)) as fresh:
-        for file, text in zip(fresh, texts.values(), strict=True):
-            write_text(file, text)
-        # the solver's own reader computes the rows of checks, or raises SolverError
-        _core.Solver(RIGID_BODY, model=str(dict(zip(texts, fresh, strict=True))[files.model]))
-    return files
+    found = replace(found, hold_out=(*found.hold_out, *tests))
+    found.save(out, overwrite=overwrite, more=more)
+    return IdentificationFiles(*found.files(out))
+
+
+def identification_texts(found: Identification, files: Sequence[Path]) -> tuple[str, ...]:
+    """Contents of the files, in their order. Raises RobotError, SolverError."""
+    named = IdentificationFiles(*files)
+    model = model_file_text(found, f"{named.robot.stem}_model")
+    return (
+        _run_configuration(found, named),
+        model,
+        uncertainty_text(found, model),
+        json_text(found.numbers()),
+        found.page(),
+    )
 
 
 def _run_configuration(found: Identification, files: IdentificationFiles) -> str:
@@ -153,13 +97,8 @@ def _run_configuration(found: Identification, files: IdentificationFiles) -> str
     return robot_text(identified, files.robot)
 
 
-def _table_of(found: Identification, test: HoldOut) -> ReportTable:
-    title, notes = f"Error on {test.recording.name}", "; ".join(test.notes)
-    return held_out_table(found, title, notes, rmse=test.rmse, coverage=test.coverage)
-
-
-def summary(found: Identification, tests: Sequence[HoldOut] = ()) -> dict[str, Any]:
-    """Everything but the samples, for JSON. tests: recordings that were held out."""
+def identification_numbers(found: Identification) -> dict[str, Any]:
+    """Everything but the samples, for JSON."""
     robot = found.robot
     return {
         "schema": SCHEMA,
@@ -171,7 +110,6 @@ def summary(found: Identification, tests: Sequence[HoldOut] = ()) -> dict[str, A
             for name in found.__dataclass_fields__
             if name not in ("robot", "blocks", "factor", "band")
         },
-        "hold_out": [plain(test) for test in tests],
         "blocks": [
             {
                 "recording": block.recording,

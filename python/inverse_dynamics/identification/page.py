@@ -13,7 +13,7 @@ from inverse_dynamics.evaluation.evaluation import joint_errors
 from inverse_dynamics.identification.knowledge import PARAMETERS, UNITS
 from inverse_dynamics.identification.result import COLUMNS
 from inverse_dynamics.identification.summary import choices_told
-from inverse_dynamics.identification.tables import held_out_table
+from inverse_dynamics.identification.tables import held_out_table, hold_out_table
 from inverse_dynamics.show.page import (
     ReportRun,
     ReportSummary,
@@ -30,13 +30,11 @@ if TYPE_CHECKING:
     from inverse_dynamics.identification.result import HeldOutBlock, Identification
 
 
-def render_identification(found: Identification, tests: Sequence[ReportTable] = ()) -> str:
-    """The page as text. tests: errors on other recordings. Raises RobotError."""
+def identification_page(found: Identification) -> str:
+    """The page as text. Raises RobotError."""
     recordings = list(dict.fromkeys(block.recording for block in found.blocks))
     runs = [_run(found, name, len(recordings) > 1) for name in recordings]
-    return render_page(
-        f"{found.robot.name}: identified model", runs, summary=_summary(found, tests)
-    )
+    return render_page(f"{found.robot.name}: identified model", runs, summary=_summary(found))
 
 
 def _run(found: Identification, recording: str, several: bool) -> ReportRun:
@@ -84,11 +82,15 @@ def _block_facts(blocks: Sequence[HeldOutBlock]) -> list[tuple[str, str]]:
     ]
 
 
-def _summary(found: Identification, tests: Sequence[ReportTable]) -> ReportSummary:
+def _summary(found: Identification) -> ReportSummary:
     note = (
         "Root mean square of computed - measured over blocks that no model of the row was fitted to; nothing was "
         "chosen on them either."
     )
+    tests = [
+        hold_out_table(found, test, f"Error on {test.recording.name}", "; ".join(test.notes))
+        for test in found.hold_out
+    ]
     known = (_friction(found), _intervals(found), _prior(found))
     return ReportSummary(
         table=held_out_table(found, note=note),

@@ -22,14 +22,18 @@ from inverse_dynamics._core import FastModel, Solver
 from inverse_dynamics.errors import EvaluationError, RobotError
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY
+from inverse_dynamics.show.result import ResultFiles
 from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
+    from typing import Any
 
     from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.evaluation.bands import TorqueBand
+    from inverse_dynamics.identification.hold_out import HoldOut
     from inverse_dynamics.robots.robots import Robot
+    from inverse_dynamics.show.result import Line
 
 COLUMNS = {
     "urdf": "URDF",  # the description, without friction
@@ -175,9 +179,12 @@ class Choice:
     chosen: bool
 
 
-@dataclass(frozen=True)
-class Identification:
+@dataclass(frozen=True, repr=False)
+class Identification(ResultFiles):
     """A model from recordings, and how good it is. n joints; order of the chain."""
+
+    names = ("{stem}_model{suffix}", "{stem}_model.json", "{stem}.json", "{stem}.html")
+    reader = ", as --robot takes it"
 
     robot: Robot  # the run configuration that was started from
     recordings: tuple[Path, ...]
@@ -210,6 +217,39 @@ class Identification:
     findings: tuple[Finding, ...]
     notes: tuple[str, ...]  # of reading and differentiating, as evaluate() has them
     drive_gains: tuple[DriveGain, ...] = ()  # determined with known loads; of currents only
+    hold_out: tuple[HoldOut, ...] = ()  # errors on recordings that nothing was fitted to
+
+    def numbers(self) -> dict[str, Any]:
+        """Everything but the samples, for JSON."""
+        from inverse_dynamics.identification.files import identification_numbers
+
+        return identification_numbers(self)
+
+    def lines(self) -> Iterable[Line]:
+        """What the screen shows."""
+        from inverse_dynamics.identification.summary import identification_lines
+
+        return identification_lines(self)
+
+    def inputs(self) -> tuple[Path | None, ...]:
+        """The recordings and the robot's files."""
+        return *self.recordings, *self.robot.files
+
+    def page(self) -> str:
+        """The page as text. Raises RobotError."""
+        from inverse_dynamics.identification.page import identification_page
+
+        return identification_page(self)
+
+    def texts(self, files: Sequence[Path]) -> tuple[str, ...]:
+        """Run configuration, model, what it may be wrong by, all numbers, page."""
+        from inverse_dynamics.identification.files import identification_texts
+
+        return identification_texts(self, files)
+
+    def test(self, fresh: Sequence[Path]) -> None:
+        """Read the model: the solver's own reader computes the rows of checks, or raises SolverError."""
+        Solver(RIGID_BODY, model=str(fresh[1]))
 
     def rmse(self, column: str) -> float:
         """Held-out error of a name of COLUMNS: mean over the joints."""

@@ -7,11 +7,26 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.identification.result import LAWS
+from inverse_dynamics.identification.tables import held_out_table, hold_out_table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from inverse_dynamics.identification.result import Choice, DriveGain, Identification, Level
+    from inverse_dynamics.show.result import Line
+
+
+def identification_lines(found: Identification) -> Iterator[Line]:
+    """What the screen shows."""
+    yield "", found.robot.description or found.robot.name
+    yield "recordings", ", ".join(map(str, found.recordings))
+    yield from choices_told(found)
+    yield "note", found.notes
+    yield held_out_table(found, "RMSE on held-out blocks")
+    for test in found.hold_out:
+        yield hold_out_table(found, test, f"RMSE on {test.recording}")
+        yield "note", [f"{test.recording}: {note}" for note in test.notes]
+    yield "finding", [finding.text for finding in found.findings]
 
 
 def choices_told(found: Identification) -> list[tuple[str, str]]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Held-out errors of models as a table."""
+"""Held-out errors of models as tables."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.identification.hold_out import HoldOut
     from inverse_dynamics.identification.result import Identification
 
 
@@ -35,3 +36,8 @@ def held_out_table(
     }
     columns[IN_BAND] = 100 * (found.coverage if coverage is None else coverage)
     return of_joints(title, found.joints, found.units, columns, note, means=columns)
+
+
+def hold_out_table(found: Identification, test: HoldOut, title: str, note: str = "") -> ReportTable:
+    """The same on a recording that was held out."""
+    return held_out_table(found, title, note, rmse=test.rmse, coverage=test.coverage)

@@ -20,12 +20,7 @@ from inverse_dynamics.terminal.options import (
 from inverse_dynamics.terminal.values import file_name, numbers, stated_payload
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from inverse_dynamics.arrays import Parameter
-    from inverse_dynamics.identification.files import IdentificationFiles
-    from inverse_dynamics.identification.hold_out import HoldOut
-    from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.robots.robots import Robot
     from inverse_dynamics.terminal.screen import Line
 
@@ -144,14 +139,9 @@ def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.identification.files import (
-        check_identification_files,
-        identification_files,
-        summary,
-        write_identification,
-    )
     from inverse_dynamics.identification.hold_out import hold_out
     from inverse_dynamics.identification.identify import identify
+    from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.identification.universal_robots import friction_request
     from inverse_dynamics.identification.urdf_export import mjcf_text, urdf_text
     from inverse_dynamics.recordings.tables import parts_joined
@@ -167,10 +157,11 @@ def run(arguments: argparse.Namespace) -> None:
         "--ur": arguments.ur,
     }
     more = {option: file for option, file in more.items() if file is not None}
-    overwrite = replaces(arguments, identification_files(arguments.out)) and (
+    files = Identification.files(arguments.out)
+    overwrite = replaces(arguments, files) and (
         arguments.overwrite or not any(file.exists() for file in more.values())
     )
-    check_identification_files(arguments.out, overwrite=overwrite, more=more, inputs=inputs)
+    Identification.check(arguments.out, overwrite=overwrite, more=more, inputs=inputs)
     with progress_bar() as progress:
         found = identify(
             arguments.recordings,
@@ -182,20 +173,24 @@ def run(arguments: argparse.Namespace) -> None:
             **{name: getattr(arguments, name) for name in _OF_RECORDINGS},
         )
         options = {"effort_is": arguments.effort_is, "topic": arguments.topic}
-        tests = [
+        tests = (
             hold_out(found, recording, progress=progress, **options)
             for recording in arguments.hold_out
-        ]
+        )
+        found = replace(found, hold_out=tuple(tests))
     texts = {"--urdf-out": urdf_text, "--mjcf-out": mjcf_text, "--ur": friction_request}
-    files = write_identification(
-        found,
-        arguments.out,
-        overwrite=overwrite,
-        more={file: texts[option](found) for option, file in more.items()},
-        tests=tests,
-    )
-    lines = [*_lines(found, files, tests), ("also", list(more.values()))]
-    show(arguments, summary(found, tests), [*files, *more.values()], lines)
+    exports = {file: texts[option](found) for option, file in more.items()}
+    found.save(arguments.out, overwrite=overwrite, more=exports)
+    robot_file, model, uncertainty, figures, page = files
+    names: list[Line] = [
+        ("robot", f"{robot_file}: `ids evaluate RECORDING --robot {robot_file}`"),
+        ("model", model),
+        ("uncertainty", f"{uncertainty}: for `ids payload` and `contact`"),
+        ("page", page),
+        ("figures", figures),
+        ("also", list(more.values())),
+    ]
+    show(arguments, found.numbers(), [*files, *more.values()], [*found.lines(), *names])
 
 
 def _robot(arguments: argparse.Namespace) -> Robot:
@@ -216,28 +211,3 @@ def _robot(arguments: argparse.Namespace) -> Robot:
     if arguments.robot is None:
         robot = replace(robot, effort="torque", friction=False)
     return with_changes(robot, **changes)
-
-
-def _lines(
-    found: Identification, files: IdentificationFiles, tests: Sequence[HoldOut]
-) -> Iterator[Line]:
-    from inverse_dynamics.identification.summary import choices_told
-    from inverse_dynamics.identification.tables import held_out_table
-    from inverse_dynamics.terminal.screen import title
-    from inverse_dynamics.terminal.tables import on_screen
-
-    yield title(found.robot)
-    yield "recordings", ", ".join(map(str, found.recordings))
-    yield from choices_told(found)
-    yield "note", found.notes
-    yield on_screen(held_out_table(found, "RMSE on held-out blocks"))
-    for test in tests:
-        name = f"RMSE on {test.recording}"
-        yield on_screen(held_out_table(found, name, rmse=test.rmse, coverage=test.coverage))
-        yield "note", [f"{test.recording}: {note}" for note in test.notes]
-    yield "finding", [finding.text for finding in found.findings]
-    yield "robot", f"{files.robot}: `ids evaluate RECORDING --robot {files.robot}`"
-    yield "model", files.model
-    yield "uncertainty", f"{files.uncertainty}: for `ids payload` and `contact`"
-    yield "page", files.page
-    yield "figures", files.figures

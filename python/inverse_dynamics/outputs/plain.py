@@ -9,11 +9,14 @@ import sys
 from dataclasses import asdict, fields, is_dataclass
 from pathlib import Path
 from types import NoneType, SimpleNamespace, UnionType
-from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from inverse_dynamics.wording import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
 
 # What modules import for their annotations alone. Not NDArray: NumPy 2.5 made it an alias, with an origin of its own.
 _ARRAYS = {
@@ -38,6 +41,14 @@ def plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return str(value) if isinstance(value, Path) else value
+
+
+def objects_of_joints(
+    joints: Sequence[str], units: Sequence[str], columns: Mapping[str, Any]
+) -> list[Any]:
+    """An object for each joint, of columns (n,) by key."""
+    rows = zip(joints, units, *columns.values(), strict=True)
+    return [dict(zip(("joint", "unit", *columns), row, strict=True)) for row in rows]
 
 
 def json_text(data: Any) -> str:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.payload.payload import Payload
 
 
-def render_payload(payload: Payload) -> str:
+def payload_page(payload: Payload) -> str:
     """The page as text: torques with the load, and without it to choose."""
     evaluation, samples = payload.evaluation, payload.evaluation.samples
     measured = evaluation.measured[samples.kept]

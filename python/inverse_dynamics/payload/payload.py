@@ -33,13 +33,20 @@ from inverse_dynamics.evaluation.evaluation import (
 )
 from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.identification.uncertainty import read_uncertainty
+from inverse_dynamics.outputs.plain import json_text
+from inverse_dynamics.payload.figure import payload_figure
+from inverse_dynamics.payload.files import yaml_text
+from inverse_dynamics.payload.page import payload_page
+from inverse_dynamics.payload.tables import payload_lines, payload_numbers
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.robots.solvers import brings_own_model, solver_of
+from inverse_dynamics.show.result import ResultFiles
 from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
     from typing import Any
 
@@ -95,9 +102,13 @@ class Fit:
     after: Floats
 
 
-@dataclass(frozen=True)
-class Payload(Fit):
+@dataclass(frozen=True, repr=False)
+class Payload(ResultFiles, Fit):
     """What was found. N samples, n joints; order of the chain."""
+
+    names = ("{stem}.json", "{stem}.html", "{stem}.{figure}")
+    reader = ""
+    numbers, lines, plot, page = payload_numbers, payload_lines, payload_figure, payload_page
 
     evaluation: Evaluation
     empty: Path | None
@@ -105,6 +116,14 @@ class Payload(Fit):
     notes: tuple[str, ...]
     # (k, 3) orthonormal: directions of the tip frame in which a load may lie anywhere, as no joint bears it
     idle: Floats = field(default_factory=lambda: np.empty((0, 3)))
+
+    def inputs(self) -> tuple[Path | None, ...]:
+        """The recordings and the robot's files."""
+        return self.evaluation.bag, self.empty, *self.evaluation.robot.files
+
+    def texts(self, files: Sequence[Path]) -> tuple[str, ...]:
+        """For --payload; all numbers; the page."""
+        return yaml_text(self), json_text(self.numbers()), self.page()
 
     @property
     def frame(self) -> str:

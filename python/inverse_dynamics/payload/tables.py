@@ -1,16 +1,74 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A load, and the errors without and with it, as tables."""
+"""A load, and the errors without and with it, as numbers, lines and tables."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.evaluation.tables import heading
+from inverse_dynamics.outputs.plain import objects_of_joints
+from inverse_dynamics.payload.universal_robots import UPPER
 from inverse_dynamics.show.tables import ReportTable, number, of_joints
 
 if TYPE_CHECKING:
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.payload.payload import Payload
+    from inverse_dynamics.show.result import Line
+
+
+def payload_numbers(payload: Payload) -> dict[str, Any]:
+    """All numbers, for JSON."""
+    found, evaluation = payload.estimate, payload.evaluation
+    known = found.inertia_is_known
+    columns = {
+        "rmse_before": payload.rmse_before,
+        "rmse_after": payload.rmse_after,
+        "offset": found.offset,
+        "white_noise": payload.noise.white,
+        "correlated_noise": payload.noise.correlated,
+    }
+    return {
+        "schema": 1,
+        "bag": evaluation.bag,
+        "empty": payload.empty,
+        "topic": evaluation.log.topic,
+        "robot": evaluation.robot.name,
+        "plugin": evaluation.robot.plugin,
+        "mass": found.mass,
+        "mass_half_width": found.mass_half_width,
+        "frame": payload.frame,
+        "center_of_mass": payload.center_of_mass,
+        "center_of_mass_half_width": payload.center_of_mass_half_width,
+        "inertia": upper(found.inertia) if known else None,
+        "inertia_half_width": upper(found.inertia_half_width) if known else None,
+        "covariance": found.covariance,
+        "confidence": 0.95,
+        "blocks": found.blocks,
+        "duration": found.duration,
+        "samples": len(payload.time),
+        "rounds": payload.rounds,
+        "correlation_time": payload.noise.correlation_time,
+        "joints": objects_of_joints(payload.joint_names, evaluation.units, columns),
+        "notes": payload.notes,
+    }
+
+
+def upper(matrix: Floats) -> list[float]:
+    """Entries of a symmetric matrix (3, 3), by rows."""
+    return [float(matrix[entry]) for entry in UPPER]
+
+
+def payload_lines(payload: Payload) -> list[Line]:
+    """What the screen shows."""
+    return [
+        *heading(payload.evaluation, len(payload.time), payload.estimate.duration),
+        ("without load", [payload.empty] if payload.empty else []),
+        ("note", payload.notes),
+        payload_table(payload),
+        residual_table(payload),
+    ]
 
 
 def payload_table(payload: Payload) -> ReportTable:

@@ -70,25 +70,16 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.payload.files import (
-        check_payload_output,
-        payload_files,
-        summary,
-        write_payload,
-    )
-    from inverse_dynamics.payload.tables import payload_table, residual_table
-    from inverse_dynamics.terminal.screen import heading, progress_bar, show
-    from inverse_dynamics.terminal.tables import on_screen
+    from inverse_dynamics.payload.payload import Payload, estimate_payload
+    from inverse_dynamics.payload.universal_robots import payload_request
+    from inverse_dynamics.terminal.screen import progress_bar, show
 
-    robot = chosen_robot(arguments)
+    robot, out, figures = chosen_robot(arguments), arguments.out, arguments.figures
     inputs = (arguments.bag, arguments.empty, arguments.urdf, *robot.files)
-    files = payload_files(arguments.out, arguments.figures, arguments.ur)
+    more = {"--ur": arguments.ur} if arguments.ur else {}
+    files = (*Payload.files(out, figures), *more.values())
     overwrite = replaces(arguments, files)
-    written = {"figures": arguments.figures, "ur": arguments.ur, "overwrite": overwrite}
-    check_payload_output(arguments.out, inputs=inputs, **written)
-
-    from inverse_dynamics.payload.payload import estimate_payload
-
+    Payload.check(out, overwrite=overwrite, figures=figures, more=more, inputs=inputs)
     with progress_bar() as progress:
         payload = estimate_payload(
             arguments.bag,
@@ -97,17 +88,6 @@ def run(arguments: argparse.Namespace) -> None:
             progress=progress,
             **given_overrides(arguments),
         )
-    write_payload(payload, arguments.out, **written)
-    show(
-        arguments,
-        summary(payload),
-        files,
-        [
-            *heading(payload.evaluation, len(payload.time), payload.estimate.duration),
-            ("without load", [payload.empty] if payload.empty else []),
-            ("note", payload.notes),
-            on_screen(payload_table(payload)),
-            on_screen(residual_table(payload)),
-            ("written", files),
-        ],
-    )
+    texts = {file: payload_request(payload, file.name) for file in more.values()}
+    payload.save(out, overwrite=overwrite, figures=figures, more=texts)
+    show(arguments, payload.numbers(), files, [*payload.lines(), ("written", files)])

@@ -37,14 +37,18 @@ def declare(options: Options) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.errors import UserError
-    from inverse_dynamics.evaluation.files import CONTENTS, read_evaluation
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.evaluation.files import read_evaluation
     from inverse_dynamics.evaluation.page import report_run
     from inverse_dynamics.outputs.files import check_output_file
     from inverse_dynamics.show.page import write_page
     from inverse_dynamics.terminal.screen import Screen, progress_bar
 
     check_output_file(
-        arguments.out, overwrite=arguments.overwrite, inputs=arguments.runs, results=CONTENTS
+        arguments.out,
+        overwrite=arguments.overwrite,
+        inputs=arguments.runs,
+        results=Evaluation.contents,
     )
     labels = arguments.labels or [""] * len(arguments.runs)
     if len(labels) != len(arguments.runs):

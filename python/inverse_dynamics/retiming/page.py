@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of a timed path: the robot beside itself, timed by an acceleration limit; speed, torques, limits.
 
-text = render_retimed_page(retime(path, "ur10_real"))
+text = retime(path, "ur10_real").page()
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ import numpy as np
 
 from inverse_dynamics.evaluation.page import model_facts
 from inverse_dynamics.retiming.figure import JOINT_COLORS
-from inverse_dynamics.retiming.retiming import sample_times
 from inverse_dynamics.retiming.tables import retime_table
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.show.page import motion_data, render_players, series_data
@@ -26,8 +25,10 @@ RATE = 250.0  # Hz, of what is drawn
 _FASTEST, _OTHER = ("fastest", "computed"), ("constant acceleration", "error")  # names, colours
 
 
-def render_retimed_page(result: Retimed) -> str:
+def retime_page(result: Retimed) -> str:
     """The page as text."""
+    from inverse_dynamics.retiming.retiming import sample_times  # which imports this module
+
     robot, arm = result.robot, Arm(result.robot)
     scene = Scene() if robot.urdf is None else read_scene(robot.urdf, arm.joint_names)
     motions = [(_FASTEST, result.time, result.q, result.efforts)]

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
@@ -32,9 +32,14 @@ from inverse_dynamics.recordings.log_format import LogFormat
 from inverse_dynamics.recordings.table_logs import read_motion
 from inverse_dynamics.recordings.tables import open_table
 from inverse_dynamics.recordings.vocabulary import POSITION
+from inverse_dynamics.retiming.figure import retime_figure
+from inverse_dynamics.retiming.files import FILES, write_trajectory
+from inverse_dynamics.retiming.page import retime_page
+from inverse_dynamics.retiming.tables import retime_lines, retime_numbers
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.located_yaml import read_mapping
 from inverse_dynamics.robots.robots import Robot, load_robot
+from inverse_dynamics.show.result import PAGE, ResultDirectory, files_of
 from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
@@ -45,6 +50,8 @@ if TYPE_CHECKING:
 
     from inverse_dynamics._core import Solver, TimedPath
     from inverse_dynamics.arrays import Floats, Integers
+    from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.joint_log import Storage
 
 _UNLIMITED = 1e6  # N m, rad/s: beyond every joint
 _OF_MOTORS = ("knee_velocity", "no_load_velocity")
@@ -63,9 +70,12 @@ _ROUNDING = 1e-6  # rad
 _AT_LIMIT = 0.99  # of a limit: the joint counts as being at it
 
 
-@dataclass(frozen=True)
-class Retimed:
+@dataclass(frozen=True, repr=False)
+class Retimed(ResultDirectory):
     """A path with the shortest time. N samples, n joints in the order of the chain; SI units."""
+
+    contents = files_of("retime.json", "torques", PAGE, *FILES)
+    numbers, lines, plot, page = retime_numbers, retime_lines, retime_figure, retime_page
 
     robot: Robot
     joint_names: tuple[str, ...]  # as recorded
@@ -117,11 +127,16 @@ class Retimed:
         use = np.abs(self.use)
         return np.where(use.max(axis=1) > _AT_LIMIT, use.argmax(axis=1), -1)
 
-    def plot(self) -> Any:
-        """The figure of retime_figure(), of matplotlib."""
-        from inverse_dynamics.retiming.figure import retime_figure
+    def inputs(self) -> tuple[Path | None, ...]:
+        """The robot's files."""
+        return self.robot.files
 
-        return retime_figure(self)
+    def write_more(self, directory: Path, storage: Storage | None, progress: Progress) -> None:
+        """Write the trajectory."""
+        write_trajectory(self, directory, storage or "sqlite3")
+
+
+write_retimed = Retimed.save
 
 
 class PathShape(TypedDict, total=False):

@@ -89,23 +89,14 @@ def _of_options(text: str) -> str:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.outputs.files import check_output_directory
-    from inverse_dynamics.retiming.files import CONTENTS
-    from inverse_dynamics.robots.robots import with_changes
-
-    robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
-    inputs = (arguments.path, *robot.files)
-    check_output_directory(
-        arguments.out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs
-    )
-
     from inverse_dynamics._core import MotionLimits, RetimeOptions
-    from inverse_dynamics.retiming.files import PAGE, summary, write_retimed
-    from inverse_dynamics.retiming.retiming import PER_JOINT, retime
-    from inverse_dynamics.retiming.tables import retime_table
-    from inverse_dynamics.terminal.screen import show, title
-    from inverse_dynamics.terminal.tables import on_screen
+    from inverse_dynamics.retiming.retiming import PER_JOINT, Retimed, retime
+    from inverse_dynamics.robots.robots import with_changes
+    from inverse_dynamics.terminal.screen import show
 
+    robot, out = with_changes(chosen_robot(arguments), **given_overrides(arguments)), arguments.out
+    inputs, overwrite = (arguments.path, *robot.files), arguments.overwrite
+    Retimed.check(out, overwrite=overwrite, inputs=inputs)
     given = {name: getattr(arguments, name) for name in PER_JOINT if getattr(arguments, name)}
     if arguments.tip_speed:
         given["tip_speed"] = arguments.tip_speed
@@ -126,31 +117,6 @@ def run(arguments: argparse.Namespace) -> None:
         )
     except UserError as error:
         raise type(error)(_of_options(f"{error}")) from error
-    write_retimed(
-        result,
-        arguments.out,
-        overwrite=arguments.overwrite,
-        figures=arguments.figures,
-        inputs=inputs,
-    )
-    by_acceleration = [
-        f"{other.duration:.3f} s with at most {result.acceleration:.3g} rad/s^2 in each joint, torques within "
-        "limits"
-        for other in (result.by_acceleration,)
-        if other is not None
-    ]
-    show(
-        arguments,
-        summary(result),
-        [arguments.out],
-        [
-            title(robot),
-            ("duration", f"{result.duration:.3f} s"),
-            ("by acceleration", by_acceleration),
-            ("energy", str(result.energy)),
-            ("note", result.notes),
-            on_screen(retime_table(result)),
-            ("page", arguments.out / PAGE),
-            ("written", arguments.out),
-        ],
-    )
+    result.save(out, overwrite=overwrite, figures=arguments.figures, inputs=inputs)
+    files = [("page", out / "report.html"), ("written", out)]
+    show(arguments, result.numbers(), [out], [*result.lines(), *files])

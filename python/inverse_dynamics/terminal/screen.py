@@ -7,7 +7,6 @@ import json
 import sys
 import time
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -15,21 +14,24 @@ from rich.table import Table
 from rich.text import Text
 
 from inverse_dynamics.outputs.plain import plain
+from inverse_dynamics.show.result import texts_of
+from inverse_dynamics.show.tables import ReportTable
 from inverse_dynamics.terminal.help_text import filled
+from inverse_dynamics.terminal.tables import on_screen
 from inverse_dynamics.wording import message, printable
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable, Iterable, Iterator, Mapping
+    from pathlib import Path
 
     from rich.console import ConsoleOptions, RenderableType
     from rich.segment import Segment
 
-    from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.progress import Progress
-    from inverse_dynamics.robots.robots import Robot
+    from inverse_dynamics.show import result
 
-    Line = RenderableType | tuple[str, str | Path | Iterable[object]]
+    Line = RenderableType | result.Line
 
 SCHEMA = 3  # of the object of --json; docs/command_line.md
 _FIRST_LINE = 10.0  # s
@@ -65,9 +67,9 @@ def show(
 ) -> None:
     """Print a verb's result: with --json as one object, else line by line.
 
-    written: files and directories that the verb has written. lines: a key and its text, or a line for
-    each of several texts; or what rich prints. In JSON, undefined values are null; non-ASCII characters
-    become escapes, so that a terminal acts on none.
+    written: files and directories that the verb has written. lines: those of a result, or what rich
+    prints. In JSON, undefined values are null; non-ASCII characters become escapes, so that a terminal
+    acts on none.
     """
     if arguments.json:
         verb, paths = arguments.verb, [path for path in written if path is not None]
@@ -75,39 +77,18 @@ def show(
         print(json.dumps(plain(document), indent=2, allow_nan=False))
         return
     console = Screen()
-    for line in lines:
+    for line in texts_of(lines):
         if isinstance(line, tuple):
-            key, texts = line
-            for text in [texts] if isinstance(texts, (str, Path)) else texts:
-                prefix, text = f"{key:<14} ", f"{text}"
-                if console.is_terminal:  # whole words
-                    text = "\n".join(filled(text, console.width, prefix, " " * 15))
-                    prefix = ""
-                console.print(f"{prefix}{text}")
+            key, text = line
+            prefix = f"{key:<14} "
+            if console.is_terminal and key:  # whole words
+                text, prefix = "\n".join(filled(text, console.width, prefix, " " * 15)), ""
+            console.print(f"{prefix}{text}" if key else Text(text, "bold"))
         else:
-            if isinstance(line, Table) and line.caption and console.is_terminal:
-                line.caption = "\n".join(filled(f"{line.caption}", console.width, "", ""))
-            console.print(line)
-
-
-def title(robot: Robot) -> Text:
-    """The first line."""
-    return Text(robot.description or robot.name, "bold")
-
-
-def heading(
-    evaluation: Evaluation, samples: int | None = None, duration: float | None = None
-) -> list[Line]:
-    """Robot, solver and recording. samples, duration [s]: those that are used; None: all."""
-    robot, log = evaluation.robot, evaluation.log
-    samples = len(log) if samples is None else samples
-    duration = log.duration if duration is None else duration
-    source = ", ".join(filter(None, (str(evaluation.bag), log.topic)))
-    return [
-        title(robot),
-        ("solver", f"{robot.plugin}{'' if robot.friction else ', friction left out'}"),
-        ("recording", f"{source}: {samples} samples, {duration:.1f} s"),
-    ]
+            shown = on_screen(line) if isinstance(line, ReportTable) else line
+            if isinstance(shown, Table) and shown.caption and console.is_terminal:
+                shown.caption = "\n".join(filled(f"{shown.caption}", console.width, "", ""))
+            console.print(shown)
 
 
 def announce(text: str) -> None:

@@ -17,7 +17,7 @@ from inverse_dynamics.errors import (
     RobotError,
 )
 from inverse_dynamics.evaluation import run
-from inverse_dynamics.evaluation.files import evaluate_into, write_evaluation
+from inverse_dynamics.evaluation.files import evaluate_into
 from inverse_dynamics.installation import extras
 from inverse_dynamics.recordings.bags import write_joint_logs
 from inverse_dynamics.recordings.joint_log import JointLog
@@ -281,7 +281,7 @@ def test_a_result_written_while_computing_is_that_of_arrays(bag, robot, tmp_path
         progress=lambda what, done, total: shares.append((what, done, total)),
     )
     whole = evaluate(bag, robot, effort_is=effort_is)
-    write_evaluation(whole, tmp_path / "whole")
+    whole.save(tmp_path / "whole")
     for name in ("series.npz", "metrics.json", "torques.png", "bag/bag.db3"):
         one, other = (tmp_path / directory / name for directory in ("streamed", "whole"))
         assert one.read_bytes() == other.read_bytes(), name

@@ -133,18 +133,6 @@ def test_the_output_recording_has_the_storage_of_the_input_or_the_one_given(
     assert read_joint_log(tmp_path / "given/bag", topic="/torques").storage == storage
 
 
-def test_nothing_is_written_if_the_last_file_fails(tmp_path, evaluation, monkeypatch):
-    from inverse_dynamics.evaluation import figure
-
-    def fail(*_, **__):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(figure, "save_torque_figure", fail)
-    with pytest.raises(OutputError, match="No space left on device"):
-        write_evaluation(evaluation, tmp_path / "result")
-    assert os.listdir(tmp_path) == []
-
-
 def test_a_directory_of_something_else_is_no_result(tmp_path):
     expected = "expected one written by `ids evaluate`"
     with pytest.raises(OutputError, match=f": holds no evaluation.json; {expected}"):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arrays in, and an evaluation as people look at it."""
 
+import pickle
 import re
 import sys
 from types import ModuleType
@@ -111,3 +112,10 @@ def test_an_evaluation_is_a_data_frame(evaluation, monkeypatch, library):
 def test_names_of_the_package_are_those_for_users():
     assert {"Solver", "evaluate", "identify"} <= set(dir(inverse_dynamics))
     assert not {"TYPE_CHECKING", "import_module"} & set(dir(inverse_dynamics))
+
+
+def test_it_is_pickled_with_its_explanation_and_without_its_run(evaluation):
+    again = pickle.loads(pickle.dumps(evaluation))
+    assert (repr(again), again.causes) == (repr(evaluation), evaluation.causes)
+    np.testing.assert_array_equal(again.computed, evaluation.computed)
+    assert again.run is None

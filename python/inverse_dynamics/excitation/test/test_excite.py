@@ -20,7 +20,8 @@ from simulation_arms import robots_package, two_links
 from inverse_dynamics.cli import main
 from inverse_dynamics.excitation import excitation
 from inverse_dynamics.excitation.excitation import ExcitationOptions
-from inverse_dynamics.excitation.excite import LEAD_IN, excite, message_text
+from inverse_dynamics.excitation.excite import excite
+from inverse_dynamics.excitation.files import LEAD_IN, message_text
 from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.robots.robots import load_robot, robot_of_description
 from inverse_dynamics.simulation import simulate, write_run

@@ -17,7 +17,7 @@ from pages import data_of
 
 from inverse_dynamics import FastModel, Solver, evaluate, write_joint_logs
 from inverse_dynamics._core import RobotDescription
-from inverse_dynamics.errors import OutputError, RobotError, SolverError
+from inverse_dynamics.errors import RobotError, SolverError
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.identification import files as identifications
 from inverse_dynamics.identification.files import write_identification
@@ -164,48 +164,9 @@ def test_the_request_of_universal_robots_driver_has_the_shares_of_friction(found
         friction_request(found)
 
 
-def test_all_files_or_none(found, tmp_path, monkeypatch):
-    """An error while they are put in place leaves the older ones."""
-    import os
-
-    files = write_identification(found, tmp_path / "arm.yaml")
-    before = {file: file.read_text() for file in files}
-    replaced = os.replace
-    calls = []
-
-    def fail_late(source, target):
-        calls.append(target)
-        if len(calls) == 3:
-            raise OSError(28, "No space left on device", str(target))
-        return replaced(source, target)
-
-    monkeypatch.setattr(os, "replace", fail_late)
-    other = replace(found, law="load")
-    with pytest.raises(OutputError, match="No space left"):
-        write_identification(other, tmp_path / "arm.yaml", overwrite=True)
-    assert {file: file.read_text() for file in files} == before
-    assert sorted(tmp_path.iterdir()) == sorted(files)
-
-
-def test_older_files_are_kept_unless_they_may_be_replaced(found, files):
-    with pytest.raises(OutputError, match=r"exists already.*--overwrite"):
-        write_identification(found, files.robot)
-    with pytest.raises(OutputError, match=r"expected a name ending in \.yaml"):
-        write_identification(found, files.robot.with_suffix(".txt"))
-
-
-def test_what_is_read_is_not_replaced(found, tmp_path):
-    recording = tmp_path / "arm.json"
-    recording.touch()
-    with pytest.raises(OutputError, match="is read"):
-        write_identification(
-            replace(found, recordings=(recording,)), tmp_path / "arm.yaml", overwrite=True
-        )
-
-
 def test_all_figures_are_in_json(found, files):
     data = json.loads(files.figures.read_text())
-    assert plain(identifications.summary(found)) == data
+    assert plain(found.numbers()) == data
     assert data["model"]["parameters"] == found.model.parameters.tolist()
     assert data["held_out"]["identified"] == found.held_out["identified"].tolist()
     assert [block["samples"] for block in data["blocks"]] == [300] * 5

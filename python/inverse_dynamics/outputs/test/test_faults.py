@@ -17,7 +17,7 @@ from example_evaluations import make_evaluation
 from example_robots import URDF
 
 from inverse_dynamics import read_topics, write_evaluation
-from inverse_dynamics.evaluation.files import CONTENTS
+from inverse_dynamics.evaluation.evaluation import Evaluation
 from inverse_dynamics.robots import verb_robots as robots
 
 RAW = ("--accelerations", "backward-difference")
@@ -141,7 +141,7 @@ def test_a_signal_leaves_no_trace_and_tells_what_there_is(bag, result, tmp_path,
     assert err.decode() == f"ids: {what}; nothing was written{kept}\n"
     assert os.listdir(tmp_path) == (["out"] if older else [])
     if older:
-        assert CONTENTS.foreign(tmp_path / "out") == []
+        assert Evaluation.contents.foreign(tmp_path / "out") == []
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -23,8 +23,8 @@ from inverse_dynamics._core import (
     residual_noise,
 )
 from inverse_dynamics.errors import InvalidParameterError, OutputError
-from inverse_dynamics.payload.files import check_payload_output, payload_files, write_payload
 from inverse_dynamics.payload.payload import (
+    Payload,
     PayloadError,
     Samples,
     _require_own_tip,
@@ -118,7 +118,7 @@ def test_what_is_left_is_the_noise(recording):
 def test_the_file_is_what_the_option_and_the_run_configuration_read(recording, tmp_path):
     payload = estimate_payload(recording, "panda_simulated")
     out = tmp_path / "payload.yaml"
-    write_payload(payload, out, figures=())
+    payload.save(out, figures=())
     robot = load_robot("panda_simulated")
     description = read_description(robot.urdf)
     _, q, qd, qdd = motion()
@@ -149,7 +149,7 @@ def test_inertia_is_written_where_the_data_tell_it(tmp_path):
     file = table(tmp_path / "fast.csv", loaded(load, speed=2.5, seconds=12.0, noise=0.01))
     payload = estimate_payload(file, "panda_simulated")
     assert payload.estimate.inertia_is_known
-    write_payload(payload, tmp_path / "payload.yaml", figures=())
+    payload.save(tmp_path / "payload.yaml", figures=())
     read = option(str(tmp_path / "payload.yaml"))["payload.inertia"]
     assert read == pytest.approx(load["inertia"], abs=0.02)
 
@@ -178,32 +178,6 @@ def test_the_verb_writes_yaml_json_and_figure(ids, recording):
     code, _, err = ids(*again)
     assert code == 2
     assert "payload.yaml: exists already" in err
-
-
-def test_all_files_or_none(recording, tmp_path, monkeypatch):
-    """An error while they are put in place leaves the older ones."""
-    import os
-
-    payload = estimate_payload(recording, "panda_simulated")
-    out = tmp_path / "payload.yaml"
-    write_payload(payload, out)
-    files = payload_files(out, ("png",))
-    for file in files:
-        file.write_text("older")
-    around = sorted(tmp_path.iterdir())
-    replaced, calls = os.replace, []
-
-    def fail_late(source, target):
-        calls.append(target)
-        if len(calls) == len(files):
-            raise OSError(28, "No space left on device", str(target))
-        return replaced(source, target)
-
-    monkeypatch.setattr(os, "replace", fail_late)
-    with pytest.raises(OutputError, match="No space left"):
-        write_payload(payload, out, overwrite=True)
-    assert [file.read_text() for file in files] == ["older"] * len(files)
-    assert sorted(tmp_path.iterdir()) == around
 
 
 def test_an_empty_recording_tells_offsets_and_noise(ids, tmp_path):
@@ -327,9 +301,7 @@ def test_names_of_outputs_are_checked(ids, recording, tmp_path):
     result = ids("payload", recording, "--robot", "panda_simulated", "--out", "payload.txt")
     fails(result, "expected a name ending in .yaml")
     with pytest.raises(OutputError, match="which is read"):
-        check_payload_output(
-            tmp_path / "a.yaml", (), inputs=[tmp_path / "a.yaml", recording.parent]
-        )
+        Payload.check(tmp_path / "a.yaml", inputs=[tmp_path / "a.yaml", recording.parent])
 
 
 def test_the_estimator_takes_samples_one_by_one():
@@ -479,7 +451,7 @@ def test_a_direction_that_no_joint_bears_is_no_reason_to_refuse(tmp_path):
     assert found.center_of_mass == pytest.approx([0.03, 0.0, 0.0], abs=0.003)
     assert np.isnan(found.center_of_mass_half_width).tolist() == [False, False, True]
     assert any("the load's position along (0, 0, 1)" in note for note in found.notes)
-    write_payload(found, tmp_path / "p.yaml", figures=())
+    found.save(tmp_path / "p.yaml", figures=())
     text = (tmp_path / "p.yaml").read_text()
     assert "# Tip frame: link quill." in text
     assert ", any\n" in text

@@ -14,7 +14,7 @@ from inverse_dynamics import cli, load_robot, retime, trajectory_torques
 from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retime_path
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
-from inverse_dynamics.retiming.page import render_retimed_page, spans
+from inverse_dynamics.retiming.page import retime_page, spans
 from inverse_dynamics.retiming.retiming import described_limits, sample_times, torque_limit
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import with_changes
@@ -383,7 +383,7 @@ def test_spans_reach_half_way_to_their_neighbours():
 
 def test_page_races_both_motions(fastest, tmp_path):
     page = tmp_path / "report.html"
-    page.write_text(render_retimed_page(fastest))
+    page.write_text(retime_page(fastest))
     assert f"{fastest.seconds_saved:.3f} s" in page.read_text()
     with browser(tmp_path / "profile") as driver:
         driver.get(page.as_uri())
