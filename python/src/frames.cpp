@@ -34,6 +34,7 @@ std::size_t linkOf(const RobotDescription& robot, const std::string& frame) {
       joint == RobotDescription::kNone ? robot.linkIndex(frame) : robot.joints[joint].child;
   if (link != RobotDescription::kNone) return link;
   std::vector<std::string> known;
+  known.reserve(robot.links.size() + robot.joints.size());
   for (const auto& each : robot.links) known.push_back(each.name);
   for (const auto& each : robot.joints) known.push_back(each.name);
   const std::string nearest = chain_dynamics::nearestName(frame, known);

@@ -203,6 +203,7 @@ void bindRobotDescription(py::module_& module) {
       .def_property_readonly("joints",
                              [](const RobotDescription& robot) {
                                std::vector<Joint> joints;
+                               joints.reserve(robot.joints.size());
                                for (const auto& joint : robot.joints) {
                                  joints.push_back(described(robot, joint));
                                }

@@ -11,6 +11,7 @@
 #include "inverse_dynamics_control/computed_torque.hpp"
 #include "inverse_dynamics_control/feed_forward.hpp"
 #include "inverse_dynamics_control/gravity_compensation.hpp"
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/load_friction.hpp"
 
 namespace inverse_dynamics_control::pd_gravity_compensation_test {

@@ -353,6 +353,7 @@ std::vector<Grid> gridsOf(const SampleReport& found, const SampleRules& rules) {
         "record for longer, or take backward differences");
   }
   std::vector<Grid> grids;
+  grids.reserve(found.pieces.size());
   for (const Piece& piece : found.pieces) {
     grids.emplace_back(piece, found.usual_period);
   }

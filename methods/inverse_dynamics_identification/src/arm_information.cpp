@@ -54,6 +54,7 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
                                      "numbers of each joint", "others", "take that of the samples");
   }
   std::vector<WhitenedRows> joints;
+  joints.reserve(static_cast<std::size_t>(n));
   for (Index j = 0; j < n; ++j) {
     joints.emplace_back(noise.white[j], noise.correlated[j], noise.correlation_time, links + own);
   }

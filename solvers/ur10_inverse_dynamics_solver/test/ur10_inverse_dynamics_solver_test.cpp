@@ -19,6 +19,7 @@
 #include "inverse_dynamics_solver/motor_currents.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
+#include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
 namespace ur10_inverse_dynamics_solver::ur10_inverse_dynamics_solver_test {
 

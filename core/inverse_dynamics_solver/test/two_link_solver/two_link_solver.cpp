@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <pluginlib/class_list_macros.hpp>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
