@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "chain_dynamics/located_yaml.hpp"
 #include "chain_dynamics/joint_frame.hpp"
+#include "chain_dynamics/located_yaml.hpp"
 #include "model_file_joint.hpp"
 #include "plausibility.hpp"
 

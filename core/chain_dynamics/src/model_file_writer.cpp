@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "chain_dynamics/model_file.hpp"
 #include "chain_dynamics/joint_frame.hpp"
+#include "chain_dynamics/model_file.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "chain_dynamics/joint_frame.hpp"
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
 #include "definite_inertia.hpp"
-#include "chain_dynamics/joint_frame.hpp"
 #include "plausibility.hpp"
 
 namespace chain_dynamics {

@@ -10,9 +10,9 @@
 #include <string>
 
 #include "chain_dynamics/friction.hpp"
+#include "chain_dynamics/joint_frame.hpp"
 #include "chain_dynamics/urdf.hpp"
 #include "example_models.hpp"
-#include "chain_dynamics/joint_frame.hpp"
 #include "model_file_texts.hpp"
 
 namespace chain_dynamics::model_file_writer_test {

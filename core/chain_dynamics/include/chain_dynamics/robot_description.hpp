@@ -75,7 +75,8 @@ struct RobotDescription {
     std::size_t child = kNone;   ///< link
     /// Pose of the child link's frame in the parent link's frame at position 0.
     Transform<double> placement = Transform<double>::identity();
-    Eigen::Vector3d rpy = Eigen::Vector3d::Zero();  ///< of `placement`: roll, pitch, yaw as stated; rad
+    /// Roll, pitch, yaw of `placement` as stated; rad.
+    Eigen::Vector3d rpy = Eigen::Vector3d::Zero();
     /// Of any length but 0, in the frame of the child link. A fixed joint's isn't read, nor are its
     /// limits, mimic and dynamics.
     Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
