@@ -484,7 +484,7 @@ def _blind(
 
 
 def _remedy(evaluation: Evaluation) -> str:
-    """Against high thresholds. What the model lacks throughout no longer part mends."""
+    """Against high thresholds. A longer quiet part can't fix errors of the model."""
     if evaluation.diagnosis:
         causes = (f"{cause.reason}; {cause.remedy}" for cause in evaluation.diagnosis)
         return f"first remove the likely cause of the error: {', or '.join(causes)}"

@@ -269,7 +269,7 @@ class _Contest:
         return float(self.fit.mean(self.squares[i]))
 
     def add(self, *rivals: Rival) -> None:
-        """More of them, unless they can't be."""
+        """Add rivals, skipping fits that aren't finite."""
         for rival in rivals:
             squares = self.fit.errors(rival)
             if np.isfinite(squares).all():

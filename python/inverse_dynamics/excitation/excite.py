@@ -5,7 +5,7 @@
     result.deviation["motion"]                        # (n,) N m, after it
     result.save("motion.yaml")
 
-What is searched for, and how: simulation/excitation.py.
+What is searched for, and how: excitation.py.
 """
 
 from __future__ import annotations
