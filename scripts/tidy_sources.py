@@ -65,10 +65,11 @@ database = Path("build/clang_tidy/compile_commands.json")
 database.parent.mkdir(exist_ok=True)
 entries = json.loads(Path("build/compile_commands.json").read_text())
 commands = [own for entry in entries for own in own_commands(entry)]
-headers = git("ls-files", "*/include/*.hpp", "*/src/*.hpp", "*/test/*.hpp", ":!:*/without_ros/*")
+# Code of pages includes what the pages show.
+apart = (":!:*/without_ros/*", ":!:documentation_tests")
+headers = git("ls-files", "*/include/*.hpp", "*/src/*.hpp", "*/test/*.hpp", *apart)
 of_headers = [header_command(header, commands) for header in headers]
 database.write_text(json.dumps([*commands, *filter(None, of_headers)], indent=1))
-# Code of pages includes what the pages show.
-files = [*git("ls-files", "*/src/*.cpp", "*/test/*.cpp", ":!:documentation_tests"), *headers]
+files = [*git("ls-files", "*/src/*.cpp", "*/test/*.cpp", apart[1]), *headers]
 chosen = files if sys.argv[1] == "all" else sorted(touched(sys.argv[1]).intersection(files))
 sys.stdout.writelines(f"{file}\n" for file in chosen)

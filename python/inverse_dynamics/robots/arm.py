@@ -37,7 +37,12 @@ class Arm:
         self.recorded_names = tuple(_core.recorded_names(robot, list(self.joint_names)))
         _core.effort_options(robot, self.solver)  # drive gains that don't fit are refused
         if description:
-            parse_description(description, robot.urdf)  # also where the solver doesn't read it
+            # also where the solver doesn't read it
+            parse_description(description, robot.urdf)
+            try:
+                self._described = RobotDescription(description)
+            except RobotError as error:
+                raise RobotError(f"{robot.urdf}: {error}") from error
         self.units = tuple(
             "N" if kind == "prismatic" else "N m" for kind in self.solver.joint_types
         )
@@ -48,7 +53,7 @@ class Arm:
         robot = self.robot
         limits: Sequence[Mapping[str, float]] = [{}] * len(self.joint_names)
         if self.description:
-            chain = RobotDescription(self.description).chain(self.joint_names, robot.root)
+            chain = self._described.chain(self.joint_names, robot.root)
             limits = [joint.limits for joint in chain]
         elif robot.model is not None:
             limits = _model_limits(robot.model)

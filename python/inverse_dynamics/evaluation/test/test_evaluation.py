@@ -168,6 +168,9 @@ def test_description_that_is_no_xml_is_an_error_whoever_reads_it(bag, robot, tmp
             evaluate(bag, robot, urdf=tmp_path / "arm.urdf", **changes)
     with pytest.raises(RobotError, match=r"arm\.urdf: isn't a robot description: no XML"):
         evaluate(bag, robot, urdf=tmp_path / "arm.urdf", plugin=UR10, root="", tip="")
+    (tmp_path / "arm.urdf").write_text("<robot name='arm'><link/></robot>")
+    with pytest.raises(RobotError, match=r"arm\.urdf: URDF:1: .*name"):
+        evaluate(bag, robot, urdf=tmp_path / "arm.urdf", plugin=UR10, root="", tip="")
 
 
 def test_a_path_of_a_description_that_is_too_long_is_an_error(bag, robot):
