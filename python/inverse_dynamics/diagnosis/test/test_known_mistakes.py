@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[4] / "scripts"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[4] / "scripts" / "studies"))
 from causes_study import outcomes_of, shares_of
 from described_arms import OWN, arm_of
 from known_mistakes import real_recordings

@@ -11,7 +11,7 @@ import pytest
 
 from inverse_dynamics import evaluate
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[5] / "scripts"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[5] / "scripts" / "studies"))
 from known_truth import MOST_ERROR, Truth
 
 LEAST_INSIDE, MOST_INSIDE = 0.85, 0.99  # of intervals that mean 95 %

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[5] / "scripts"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[5] / "scripts" / "studies"))
 from payload_truth import Arm, trials
 
 TRIALS = 100

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 ROBOTS = {"ur10_real": "ur10_exciting_trajectory", "panda_real": "panda_exciting_trajectory"}
 """Real robots, and their recordings."""
 
-DOCS = Path(__file__).resolve().parent.parent / "docs"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
 def table(names: Sequence[str], rows: Iterable[Iterable[object]]) -> str:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.arrays import Floats
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 GRAVITY = np.array([0.0, 0.0, -9.81])
 PACKAGE = "example-robot-data==6.0.0"  # of PyPI, with makers' descriptions
 FOLDER = "cmeel.prefix/share/example-robot-data/robots/"
