@@ -16,6 +16,9 @@ cd "$workspace" || exit
 usage() { sed -n '4,/^$/s/^# \{0,1\}//p' "scripts/${0##*/}"; }
 case "${1:-}" in -h | --help) usage && exit ;; esac
 
+# What these commands make is below out/. Packages that are built or installed there are not those of the workspace.
+mkdir -p out && touch out/COLCON_IGNORE
+
 venv=$workspace/.venv
 requirements=python/requirements.txt
 
