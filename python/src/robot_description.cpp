@@ -57,8 +57,8 @@ std::size_t linkOf(const RobotDescription& robot, const std::string& name) {
   throwRobotError("robot description: expected a link '" + name + "', got none");
 }
 
-/// The links that a link is fixed to: itself, then one above the other, each with its pose in the
-/// link's frame.
+/// A link and the links above it to which it is fixed, upwards; each with its pose in the frame of
+/// the first.
 std::vector<std::pair<std::size_t, Transform>> fixedAbove(const RobotDescription& robot,
                                                           std::size_t link) {
   std::vector<std::pair<std::size_t, Transform>> found{{link, Transform::identity()}};
@@ -115,7 +115,7 @@ std::vector<DescribedJoint> chainOf(const RobotDescription& robot,
   return chain;
 }
 
-/// The link that most fixed joints are between and a link.
+/// The link that the most fixed joints separate from a link above it.
 std::string farthestFixedTo(const RobotDescription& robot, std::size_t link) {
   std::vector<std::size_t> links{link};
   for (std::size_t i = 0; i < links.size(); ++i) {  // grows

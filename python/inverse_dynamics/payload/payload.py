@@ -17,13 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics._core import (
-    PayloadEstimator,
-    PayloadOptions,
-    PayloadStatus,
-    RobotDescription,
-    residual_noise,
-)
+from inverse_dynamics._core import PayloadEstimator, PayloadOptions, PayloadStatus, residual_noise
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import (
     CAUSE,
@@ -39,7 +33,6 @@ from inverse_dynamics.payload.files import yaml_text
 from inverse_dynamics.payload.page import payload_page
 from inverse_dynamics.payload.tables import payload_lines, payload_numbers
 from inverse_dynamics.progress import no_progress
-from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.robots.solvers import brings_own_model, solver_of
 from inverse_dynamics.show.result import ResultFiles
@@ -133,8 +126,7 @@ class Payload(ResultFiles, Fit):
             return f"`tip` of the model {robot.plugin if robot.model is None else robot.model.name}"
         if robot.tip or robot.urdf is None:
             return f"link {robot.tip}"
-        tip = RobotDescription(read_description(robot.urdf)).tip(self.joint_names[-1])
-        return f"link {tip}"
+        return f"link {self.evaluation.arm.described.tip(self.joint_names[-1])}"
 
     @property
     def center_of_mass(self) -> Floats:

@@ -40,7 +40,7 @@ class Arm:
             # also where the solver doesn't read it
             parse_description(description, robot.urdf)
             try:
-                self._described = RobotDescription(description)
+                self.described = RobotDescription(description)
             except RobotError as error:
                 raise RobotError(f"{robot.urdf}: {error}") from error
         self.units = tuple(
@@ -53,7 +53,7 @@ class Arm:
         robot = self.robot
         limits: Sequence[Mapping[str, float]] = [{}] * len(self.joint_names)
         if self.description:
-            chain = self._described.chain(self.joint_names, robot.root)
+            chain = self.described.chain(self.joint_names, robot.root)
             limits = [joint.limits for joint in chain]
         elif robot.model is not None:
             limits = _model_limits(robot.model)

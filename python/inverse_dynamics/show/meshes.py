@@ -50,7 +50,7 @@ class MeshPart:
 def find_mesh(name: str, directory: Path) -> Path:
     """The file that a URDF in a directory calls a mesh. Raises MeshError.
 
-    package://PACKAGE/FILE is looked for as package_roots() says [base/ament.py].
+    package://PACKAGE/FILE is looked for as package_roots() says [installation/ament.py].
     """
     scheme, separator, rest = name.partition("://")
     path = unquote(rest) if separator else name

@@ -8,7 +8,7 @@
 ///     std::cout << effort.summary() << "\n";   // current, as given, with drive gains 13 14 N m/A
 ///
 /// The meaning is stated by the user, else by the recording's format, else by the run configuration;
-/// `auto` asks the data. The comparison of causes in Python answers: evaluation/causes/compare.py.
+/// `auto` asks the data. The comparison of causes in Python answers: diagnosis/compare.py.
 
 #pragma once
 
