@@ -27,6 +27,12 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics.errors import PartialError, UserError
 from inverse_dynamics.installation.extras import EXTRAS, missing
 from inverse_dynamics.outputs.crash import crash_report
+from inverse_dynamics.outputs.files import (
+    outcome,
+    replaced,
+    start_noting_outputs,
+    written_before,
+)
 from inverse_dynamics.terminal.help_text import HelpFormatter, filled, terminal_width, wrapped
 from inverse_dynamics.terminal.options import Options
 from inverse_dynamics.wording import did_you_mean, not_built
@@ -213,22 +219,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with _stopped_by_signals(), _signals_out_of_imports():
             return _run(given)
     except _Stopped as stop:
-        _say(f"{stop}; {_outcome()}")
+        _say(f"{stop}; {outcome()}")
         return 128 + stop.number
     except KeyboardInterrupt:
-        _say(f"interrupted; {_outcome()}")
+        _say(f"interrupted; {outcome()}")
         return 128 + signal.SIGINT
     except BrokenPipeError:  # the reader of our output, `head` for one, has enough
         _drop_output()
         return 128 + signal.SIGPIPE
     except Exception as error:
-        _say(f"error: {crash_report(error, given)}; {_outcome()}")
+        _say(f"error: {crash_report(error, given)}; {outcome()}")
         return 2 if isinstance(error, ModuleNotFoundError) else 1
 
 
 def _run(given: list[str]) -> int:
-    from inverse_dynamics.outputs.files import replaced, start_noting_outputs, written_before
-
     start_noting_outputs()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # matrices are small: others would only wait
     parser = make_parser()
@@ -261,7 +265,7 @@ def _run(given: list[str]) -> int:
         return 2
     except OSError as error:
         place = error.filename or "a file, or the standard output"
-        _say(f"error: {place}: {error.strerror or error}; {_outcome()}")
+        _say(f"error: {place}: {error.strerror or error}; {outcome()}")
         _drop_output()
         return 2
     return 0
@@ -306,12 +310,6 @@ def _signals_out_of_imports() -> Iterator[None]:
         if cause is None:
             raise
         raise cause from error
-
-
-def _outcome() -> str:
-    from inverse_dynamics.outputs.files import outcome
-
-    return outcome()
 
 
 def _shown(text: str) -> str:
