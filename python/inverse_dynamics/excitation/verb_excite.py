@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.terminal.options import Options, chosen_robot, given_overrides
+from inverse_dynamics.terminal.options import Options, changed_robot, stated
 from inverse_dynamics.terminal.values import positive_number, share, whole_number
 
 if TYPE_CHECKING:
@@ -57,14 +57,10 @@ def declare(options: Options) -> None:
         default=[],
     )
     options.add(
-        "--payload",
-        "a motion that identifies only the ten parameters of a body at the tip",
+        "--payload", "a motion that identifies only the ten parameters of a body at the tip"
     )
     options.add(
-        "--seed SEED",
-        "seed of the search: the same seed gives the same motion",
-        whole_number,
-        default=0,
+        "--seed SEED", "seed of the search: the same seed gives the same motion", whole_number
     )
     options.overrides("--root", "--tip", "--gravity")
     _declare_limits(options.group("limits"))
@@ -72,9 +68,7 @@ def declare(options: Options) -> None:
 
 def _declare_limits(limits: Options) -> None:
     limits.add(
-        "--duration S",
-        "length of the motion (default: 20; with --payload: 8)",
-        positive_number,
+        "--duration S", "length of the motion (default: 20; with --payload: 8)", positive_number
     )
     limits.add(
         "--share P",
@@ -93,10 +87,7 @@ def _declare_limits(limits: Options) -> None:
         positive_number,
     )
     limits.add(
-        "--no-table",
-        "allow the arm to reach below its base",
-        dest="table",
-        action="store_false",
+        "--no-table", "allow the arm to reach below its base", dest="table", action="store_false"
     )
     limits.add(
         "--step S",
@@ -110,25 +101,20 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.excitation.excitation import ExcitationOptions
     from inverse_dynamics.excitation.excite import ExcitationResult, excite
-    from inverse_dynamics.robots.robots import with_changes
     from inverse_dynamics.terminal.screen import announce, progress_bar, show
 
-    robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
+    robot = changed_robot(arguments)
     out, overwrite, inputs = arguments.out, arguments.overwrite, (*arguments.given, *robot.files)
     ExcitationResult.check(out, overwrite=overwrite, inputs=inputs)
     names = ("duration", "share", "time_to_full_speed", "clearance", "table", "payload")
-    given = {name: getattr(arguments, name) for name in names}
-    options = ExcitationOptions(
-        **{name: value for name, value in given.items() if value is not None}
-    )
     with progress_bar() as progress:
         result = excite(
             robot,
             given=arguments.given,
-            options=options,
-            seed=arguments.seed,
+            options=ExcitationOptions(**stated(arguments, *names)),
             say=announce,
             progress=progress,
+            **stated(arguments, "seed"),
         )
     replace(result, step=arguments.step).save(out, overwrite=overwrite)
     files = ExcitationResult.files(out)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.terminal.options import SOLVER, TABLE, Options, chosen_robot, given_overrides
+from inverse_dynamics.terminal.options import SOLVER, TABLE, Options, changed_robot, stated
 
 if TYPE_CHECKING:
     import argparse
@@ -57,15 +57,14 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.feedforward.files import check_output, write_trajectory_torques
     from inverse_dynamics.feedforward.trajectory_torques import trajectory_torques
-    from inverse_dynamics.robots.robots import with_changes
     from inverse_dynamics.robots.solvers import description_notes
     from inverse_dynamics.terminal.screen import progress_bar, show
 
-    robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
+    robot = changed_robot(arguments)
     path, out, overwrite = arguments.trajectory, arguments.out, arguments.overwrite
     check_output(path, out, robot, overwrite=overwrite)
     with progress_bar() as progress:
-        result = trajectory_torques(path, robot, topic=arguments.topic or "", progress=progress)
+        result = trajectory_torques(path, robot, progress=progress, **stated(arguments, "topic"))
         left_out = write_trajectory_torques(result, out, overwrite=overwrite, progress=progress)
     missing = description_notes(robot, "effort limits") if arguments.urdf else ()
     result = replace(result, notes=(*result.notes, *left_out, *missing))

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.terminal.options import SOLVER, TABLE, Options, chosen_robot, given_overrides
+from inverse_dynamics.terminal.options import SOLVER, TABLE, Options, changed_robot, stated
 from inverse_dynamics.terminal.values import numbers, positive_number, share, whole_numbers
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def declare(options: Options) -> None:
         "straight lines, passing waypoints by at most this; 0: it stops there",
         _distance,
     )
-    way.add("--stops K,K,...", "waypoints to stand still at, from 0", whole_numbers, default=())
+    way.add("--stops K,K,...", "waypoints to stand still at, from 0", whole_numbers)
     way.add(
         "--start-speed SPEED",
         "rad/s at its start: the root of the sum of squares over the joints",
@@ -91,29 +91,18 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics._core import MotionLimits, RetimeOptions
     from inverse_dynamics.retiming.retiming import PER_JOINT, Retimed, retime
-    from inverse_dynamics.robots.robots import with_changes
     from inverse_dynamics.terminal.screen import show
 
-    robot, out = with_changes(chosen_robot(arguments), **given_overrides(arguments)), arguments.out
+    robot, out = changed_robot(arguments), arguments.out
     inputs, overwrite = (arguments.path, *robot.files), arguments.overwrite
     Retimed.check(out, overwrite=overwrite, inputs=inputs)
-    given = {name: getattr(arguments, name) for name in PER_JOINT if getattr(arguments, name)}
-    if arguments.tip_speed:
-        given["tip_speed"] = arguments.tip_speed
     try:
         result = retime(
             arguments.path,
             robot,
-            MotionLimits(**given),
-            topic=arguments.topic or "",
-            deviation=arguments.deviation,
-            stops=arguments.stops,
-            weight=arguments.weight or 0.0,
-            options=RetimeOptions(
-                margin=arguments.margin or 0.0,
-                start_speed=arguments.start_speed or 0.0,
-                end_speed=arguments.end_speed or 0.0,
-            ),
+            MotionLimits(**stated(arguments, *PER_JOINT, "tip_speed")),
+            options=RetimeOptions(**stated(arguments, "margin", "start_speed", "end_speed")),
+            **stated(arguments, "weight", "topic", "deviation", "stops"),
         )
     except UserError as error:
         raise type(error)(_of_options(f"{error}")) from error

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.recordings.joint_log import STORAGES
-from inverse_dynamics.terminal.options import Options
+from inverse_dynamics.terminal.options import Options, stated
 from inverse_dynamics.terminal.values import number, numbers, positive_number, whole_number
 from inverse_dynamics.wording import counted
 
@@ -58,19 +58,13 @@ def declare(options: Options) -> None:
     options.robot(required=True)
     options.output("BAG", "the new recording", required=True)
     options.shared("--json")
-    options.add(
-        "--storage",
-        "storage of the recording (default: sqlite3)",
-        choices=STORAGES,
-        default="sqlite3",
-    )
+    options.add("--storage", "storage of the recording (default: sqlite3)", choices=STORAGES)
     options.add(
         "--seed SEED",
         "seed of all random numbers, and of where in its period the run configuration's motion "
         "begins: the same seed gives the same recording, another one another (default: 0, from the "
         "beginning)",
         whole_number,
-        default=0,
     )
     _declare_motion(options.group("motion"))
     _declare_robot(options.group("robot"))
@@ -83,10 +77,7 @@ def _declare_motion(motion: Options) -> None:
         "desired motion (YAML: waypoints or Fourier series; default: the run configuration's)",
         Path,
     )
-    motion.add(
-        "--optimise",
-        "search for a new exciting trajectory instead, as `ids excite` does",
-    )
+    motion.add("--optimise", "search for a new exciting trajectory instead, as `ids excite` does")
     motion.add(
         "--duration S",
         "length of the motion (default: once through the trajectory; exciting ones repeat)",
@@ -98,10 +89,7 @@ def _declare_motion(motion: Options) -> None:
         whole_number,
     )
     motion.add(
-        "--no-table",
-        "allow the arm to reach below its base",
-        dest="table",
-        action="store_false",
+        "--no-table", "allow the arm to reach below its base", dest="table", action="store_false"
     )
 
 
@@ -144,10 +132,7 @@ def _declare_recording(recording: Options) -> None:
         Path,
     )
     recording.add(
-        "--effort-delay S",
-        "delay of recorded efforts behind positions and velocities [s]",
-        number,
-        default=0.0,
+        "--effort-delay S", "delay of recorded efforts behind positions and velocities [s]", number
     )
     recording.add(
         "--message-rate HZ",
@@ -161,20 +146,12 @@ def _declare_recording(recording: Options) -> None:
         nargs="?",
         const="1e-5,1e-3,0.01",
     )
-    recording.add("--drop P", "share of messages that are lost", number, default=0.0)
+    recording.add("--drop P", "share of messages that are lost", number)
     recording.add(
-        "--repeat P",
-        "share of messages that repeat the values of the previous one",
-        number,
-        default=0.0,
+        "--repeat P", "share of messages that repeat the values of the previous one", number
     )
-    recording.add("--jitter S", "standard deviation of the time stamps [s]", number, default=0.0)
-    recording.add(
-        "--start-stamp S",
-        "time stamp of the start [s] (default: 1700000000)",
-        number,
-        default=1.7e9,
-    )
+    recording.add("--jitter S", "standard deviation of the time stamps [s]", number)
+    recording.add("--start-stamp S", "time stamp of the start [s] (default: 1700000000)", number)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -194,13 +171,11 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.simulation.sensors import Sensors
 
     noise = arguments.effort_noise and EffortNoise.of_result(arguments.effort_noise)
-    sensors = Sensors(
-        effort_noise=noise, **{name: getattr(arguments, name) for name in _SENSORS.split()}
-    )
+    sensors = Sensors(effort_noise=noise, **stated(arguments, *_SENSORS.split()))
     with progress_bar() as progress:
         result = simulate(
             robot,
-            **{name: getattr(arguments, name) for name in _SIMULATION.split()},
+            **stated(arguments, *_SIMULATION.split()),
             sensors=sensors,
             gravity=MOUNTS[arguments.mount] if arguments.mount else arguments.gravity,
             say=announce,
@@ -209,9 +184,9 @@ def run(arguments: argparse.Namespace) -> None:
         write_run(
             result,
             arguments.out,
-            storage=arguments.storage,
             overwrite=arguments.overwrite,
             progress=progress,
+            **stated(arguments, "storage"),
         )
     show(arguments, _summary(result), [arguments.out], _lines(result, arguments.out))
 

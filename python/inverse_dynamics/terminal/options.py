@@ -190,6 +190,19 @@ def given_overrides(arguments: argparse.Namespace) -> dict[str, Any]:
     return {**given, "parameters": {**parameters, **body} or None}
 
 
+def changed_robot(arguments: argparse.Namespace) -> Robot:
+    """The run configuration of --robot with the overrides that were given."""
+    from inverse_dynamics.robots.robots import with_changes
+
+    return with_changes(chosen_robot(arguments), **given_overrides(arguments))
+
+
+def stated(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
+    """Options that were given, by name; the others have the defaults of what takes them."""
+    values = {name: getattr(arguments, name) for name in names}
+    return {name: value for name, value in values.items() if value is not None}
+
+
 def _meanings(choices: dict[str, str]) -> str:
     return "; ".join(f"{name}: {text}" for name, text in choices.items())
 
