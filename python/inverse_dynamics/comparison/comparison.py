@@ -7,23 +7,27 @@ comparison.rmse          # (runs, n) N m
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.comparison.figure import comparison_figure
-from inverse_dynamics.comparison.page import comparison_page
-from inverse_dynamics.comparison.tables import comparison_numbers, comparison_table
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.evaluation.figure import run_color, runs_figure
+from inverse_dynamics.evaluation.page import report_run
+from inverse_dynamics.show.page import render_page
 from inverse_dynamics.show.result import PAGE, ResultDirectory, files_of
+from inverse_dynamics.show.tables import ReportTable, of_joints
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from matplotlib.figure import Figure
+
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.show.page import ReportRun
     from inverse_dynamics.show.result import Line
 
 
@@ -32,7 +36,6 @@ class Comparison(ResultDirectory):
     """Evaluations of one recording, and their labels."""
 
     contents = files_of("comparison.json", "comparison", PAGE)
-    numbers, plot, page = comparison_numbers, comparison_figure, comparison_page
 
     evaluations: tuple[Evaluation, ...]
     labels: tuple[str, ...]  # one per evaluation, all different
@@ -41,9 +44,56 @@ class Comparison(ResultDirectory):
         """The recordings and the robots' files."""
         return [path for e in self.evaluations for path in (e.bag, *e.robot.files)]
 
+    def numbers(self) -> dict[str, Any]:
+        """Errors of each run, for JSON."""
+        first = self.evaluations[0]
+        runs = [
+            {"label": label, "plugin": evaluation.robot.plugin, "rmse": rmse}
+            for label, evaluation, rmse in zip(
+                self.labels, self.evaluations, self.rmse, strict=True
+            )
+        ]
+        return {
+            "schema": 1,
+            "bag": first.bag,
+            "joints": self.joint_names,
+            "units": first.units,
+            "runs": runs,
+        }
+
     def lines(self) -> list[Line]:
         """The table."""
-        return [comparison_table(self)]
+        return [self.table()]
+
+    def table(self) -> ReportTable:
+        """Root mean square errors, one column per run."""
+        title = f"RMSE of {' and '.join(self.labels)}"
+        columns = dict(zip(self.labels, self.rmse, strict=True))
+        return of_joints(title, self.joint_names, self.evaluations[0].units, columns, means=columns)
+
+    def plot(self) -> Figure:
+        """Measured torque and that of each run over time, and the runs' errors, one row per joint."""
+        styles = [{"color": run_color(k), "linewidth": 0.9} for k in range(len(self.labels))]
+        return runs_figure(self.evaluations, self.labels, styles, (self.title,))
+
+    def page(self) -> str:
+        """The page as text."""
+        return render_page(self.title, [self.report_run()])
+
+    def report_run(self, title: str = "", *, shown: bool = True) -> ReportRun:
+        """The first evaluation on a page, with the torques of the others to choose; shown: they are at first."""
+        first, *others = self.evaluations
+        name, *labels = self.labels
+        run = report_run(first, title or first.bag.name)
+        plugins = zip(labels, (other.robot.plugin for other in others), strict=True)
+        return replace(
+            run,
+            name=name,
+            others={label: e.computed for label, e in zip(labels, others, strict=True)},
+            others_shown=shown,
+            tables=[self.table(), *run.tables],
+            assumptions=[*run.assumptions, *plugins],
+        )
 
     @property
     def title(self) -> str:

@@ -215,14 +215,13 @@ def _write_page(
     comparison: Comparison | None,
     notes: Sequence[str],
 ) -> None:
-    from inverse_dynamics.comparison.page import report_comparison
     from inverse_dynamics.evaluation.page import report_run
     from inverse_dynamics.show.page import write_page
 
     runs = {name: report_run(e, TITLES[name]) for name, e in evaluations.items()}
     if comparison is not None:
         name = "ur10_real"
-        runs[name] = report_comparison(comparison, TITLES[name], shown=False)
+        runs[name] = comparison.report_run(TITLES[name], shown=False)
     title = f"{_COUNTS[len(runs)]} robots: measured and computed torques"
     write_page(target / "report.html", title, list(runs.values()), notes)
     write_text(target / MARK, json_text(summary(evaluations, notes)))

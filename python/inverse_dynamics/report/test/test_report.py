@@ -35,7 +35,6 @@ from pages import (
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation, write_evaluation
 from inverse_dynamics._core import Effort, Verdict
 from inverse_dynamics.comparison.comparison import compare
-from inverse_dynamics.comparison.page import report_comparison
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.page import report_run
 from inverse_dynamics.show.page import (
@@ -70,7 +69,7 @@ def run(evaluation):
 def page(run, comparison, tmp_path_factory):
     """The page as a file: two runs and a comparison."""
     file = tmp_path_factory.mktemp("page") / "report.html"
-    runs = [run, _with_others(replace(run, title="second")), report_comparison(comparison)]
+    runs = [run, _with_others(replace(run, title="second")), comparison.report_run()]
     file.write_text(render_page("A page", runs, ["A note."]))
     return file
 
@@ -156,7 +155,7 @@ def test_names_are_text_and_never_markup(evaluation, comparison):
     robot = replace(evaluation.robot, description=evil, source=evil)
     bad = replace(evaluation, errors=errors, robot=robot, notes=(evil,), joint_names=(evil,) * 6)
     bad_comparison = replace(comparison, labels=(evil, evil + "2"), evaluations=(bad, bad))
-    html = render_page(evil, [report_run(bad, evil), report_comparison(bad_comparison)], [evil])
+    html = render_page(evil, [report_run(bad, evil), bad_comparison.report_run()], [evil])
     assert "<script>alert" not in html
     assert html.count("</script") == 2
     assert data_of(html)[0]["plots"][0]["label"] == evil

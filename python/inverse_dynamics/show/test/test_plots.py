@@ -9,7 +9,6 @@ from example_evaluations import make_evaluation
 from inverse_dynamics import save_torque_figure, torque_figure
 from inverse_dynamics._core import Accelerations
 from inverse_dynamics.comparison.comparison import compare
-from inverse_dynamics.comparison.figure import comparison_figure
 from inverse_dynamics.show import palette
 
 
@@ -53,7 +52,7 @@ def test_a_spike_does_not_flatten_the_error():
     _, high = torque_figure(spiked).axes[1].get_ylim()
     assert usual <= high < 2.0 * usual
     comparison = compare([spiked, evaluation])
-    _, high = comparison_figure(comparison).axes[1].get_ylim()
+    _, high = comparison.plot().axes[1].get_ylim()
     assert usual <= high < 2.0 * usual
 
 
@@ -127,7 +126,7 @@ def test_samples_that_are_left_out_are_shaded():
 def test_a_comparison_uses_neither_the_colour_of_measured_torques_nor_that_of_an_error():
     evaluation = make_evaluation()
     runs = [replace(evaluation, computed=evaluation.computed + k) for k in range(5)]
-    left, right = comparison_figure(compare(runs, tuple("abcde"))).axes[:2]
+    left, right = compare(runs, tuple("abcde")).plot().axes[:2]
     measured, *computed = left.get_lines()
     assert measured.get_color() == palette.MEASURED
     colors = [line.get_color() for line in computed]
