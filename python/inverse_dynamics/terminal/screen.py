@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -17,7 +19,6 @@ from inverse_dynamics.outputs.plain import plain
 from inverse_dynamics.show.result import texts_of
 from inverse_dynamics.show.tables import ReportTable
 from inverse_dynamics.terminal.help_text import filled
-from inverse_dynamics.terminal.tables import on_screen
 from inverse_dynamics.wording import message, printable
 
 if TYPE_CHECKING:
@@ -89,6 +90,34 @@ def show(
             if isinstance(shown, Table) and shown.caption and console.is_terminal:
                 shown.caption = "\n".join(filled(f"{shown.caption}", console.width, "", ""))
             console.print(shown)
+
+
+def on_screen(table: ReportTable) -> Table:
+    """A table whose names stay whole; numbers are aligned to the right."""
+    shown = Table(
+        box=box.SIMPLE_HEAD,
+        title=table.title or None,
+        title_justify="left",
+        caption=table.note or None,
+        caption_justify="left",
+        collapse_padding=True,
+    )
+    for heading, column in zip(table.headings, zip(*table.rows, strict=True), strict=True):
+        texts = isinstance(column[0], str)
+        shown.add_column(heading, justify="left" if texts else "right", overflow="fold")
+    for row in table.rows:
+        if table.total and row is table.rows[-1]:
+            shown.add_section()
+        cells = (rounded(value) if isinstance(value, float) else f"{value}" for value in row)
+        shown.add_row(*cells)
+    return shown
+
+
+def rounded(value: float) -> str:
+    """Three decimals, or three significant digits of small numbers."""
+    if not math.isfinite(value):
+        return "-"
+    return f"{value:.3f}" if abs(value) >= 0.1 or value == 0 else f"{value:.3g}"
 
 
 def announce(text: str) -> None:

@@ -15,8 +15,7 @@ from inverse_dynamics import Solver, cli, evaluate, read_evaluation
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.recordings.bags import write_joint_logs
 from inverse_dynamics.robots.robots import load_robot, robot_of_description
-from inverse_dynamics.terminal.screen import _ProgressLines, progress_bar
-from inverse_dynamics.terminal.tables import rounded
+from inverse_dynamics.terminal.screen import _ProgressLines, progress_bar, rounded
 
 RAW = ("--accelerations", "backward-difference")
 NO_FIGURE = ("--figures", "none")
