@@ -31,6 +31,7 @@ def write_robot(robot: Robot, file: Path, *, overwrite: bool = False) -> None:
 def robot_text(robot: Robot, file: Path) -> str:
     """The text of the file, with paths relative to it. What isn't stated is a comment."""
     names = f"[{', '.join(map(yaml_text, robot.joints))}]"
+    gravity, gains = robot.gravity or (0.0, 0.0, -9.81), robot.drive_gains or (1.0,)
     lines = [
         "# SPDX-License-Identifier: Apache-2.0",
         "#",
@@ -44,38 +45,26 @@ def robot_text(robot: Robot, file: Path) -> str:
         f"plugin: {robot.plugin}  # `ids robots --plugins` lists the others",
         *_path("urdf", robot.urdf, file),
         *_path("model", robot.model, file),
-        _key("root", yaml_text(robot.root), "first link of the chain", stated=bool(robot.root)),
-        _key("tip", yaml_text(robot.tip), "last link of the chain", stated=bool(robot.tip)),
-        _key(
-            "gravity",
-            yaml_list(robot.gravity or (0.0, 0.0, -9.81)),
-            "m/s^2, in the frame of the root",
-            stated=robot.gravity is not None,
-        ),
-        _key("topic", yaml_text(robot.topic or "/joint_states"), "of recordings", stated=bool(robot.topic)),
-        _key("joints", names, "names in the recording, in the order of the chain", stated=bool(robot.joints)),
-        _key("friction", str(robot.friction).lower(), "whether the solver's friction counts"),
-        _key("effort", robot.effort, "torque, current, torque_without_gravity, or auto: found from the data"),
-        _key(
-            "drive_gains",
-            yaml_list(robot.drive_gains or (1.0,)),
-            "N m/A of each joint, where efforts are currents",
-            stated=bool(robot.drive_gains),
-        ),
+        _key("root", robot.root, yaml_text(robot.root), "first link of the chain"),
+        _key("tip", robot.tip, yaml_text(robot.tip), "last link of the chain"),
+        _key("gravity", robot.gravity, yaml_list(gravity), "m/s^2, in the frame of the root"),
+        _key("topic", robot.topic, yaml_text(robot.topic or "/joint_states"), "of recordings"),
+        _key("joints", robot.joints, names, "names in the recording, in the order of the chain"),
+        _key("friction", True, str(robot.friction).lower(), "whether the solver's friction counts"),
+        _key("effort", True, robot.effort, "torque, current, torque_without_gravity, or auto: found from the data"),
+        _key("drive_gains", robot.drive_gains, yaml_list(gains), "N m/A of each joint, where efforts are currents"),
         *_table(robot),
         "accelerations:",
         f"  method: {robot.accelerations}",
-        _key(
-            "  cutoff", yaml_number(robot.cutoff or 10.0), "Hz; else chosen from the data",
-            stated=robot.cutoff is not None,
-        ),
+        _key("  cutoff", robot.cutoff, yaml_number(robot.cutoff or 10.0), "Hz; else chosen from the data"),
     ]  # fmt: skip
     if robot.source:
         lines.append(f"source: {yaml_text(robot.source)}")
     return "\n".join(lines) + "\n"
 
 
-def _key(key: str, value: str, meaning: str, *, stated: bool = True) -> str:
+def _key(key: str, stated: object, value: str, meaning: str) -> str:
+    """A line; a comment where nothing is stated."""
     return f"{'' if stated else '# '}{key}: {value}  # {meaning}"
 
 
@@ -99,17 +88,11 @@ def _table(robot: Robot) -> list[str]:
     """How tables are read: docs/tables.md."""
     scale = f"[{', '.join(map(yaml_text, robot.scale))}]"
     rows = [
-        _key("  columns", yaml_text(robot.columns), "which is what", stated=bool(robot.columns)),
-        _key("  scale", scale, "factors to SI units", stated=bool(robot.scale)),
-        _key("  sign", yaml_list(robot.sign), "1 or -1 for each joint", stated=bool(robot.sign)),
-        _key(
-            "  rate",
-            yaml_number(robot.rate or 0.0),
-            "Hz, without a time",
-            stated=robot.rate is not None,
-        ),
+        _key("  columns", robot.columns, yaml_text(robot.columns), "which is what"),
+        _key("  scale", robot.scale, scale, "factors to SI units"),
+        _key("  sign", robot.sign, yaml_list(robot.sign), "1 or -1 for each joint"),
+        _key("  rate", robot.rate, yaml_number(robot.rate or 0.0), "Hz, without a time"),
+        _key("  gears", robot.gears, yaml_list(robot.gears), "of recorded motors"),
     ]
-    gears = yaml_list(robot.gears)
-    rows.append(_key("  gears", gears, "of recorded motors", stated=bool(robot.gears)))
-    used = any((robot.columns, robot.scale, robot.sign, robot.rate, robot.gears))
-    return ["table:", *(row for row in rows if not row.startswith("# "))] if used else []
+    used = [row for row in rows if not row.startswith("# ")]
+    return ["table:", *used] if used else []
