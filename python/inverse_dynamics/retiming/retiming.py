@@ -202,12 +202,12 @@ def retime(
         raise UserError(f"weight: expected a finite number, s/J, at least zero, got {weight:g}")
     arm = Arm(robot)
     options = options or RetimeOptions()
-    limits = described_limits(arm, robot, limits)
+    limits = described_limits(arm, limits)
     notes = [*arm.solver.warnings, *_notes_of_velocities(arm, limits)]
     if not isinstance(path, JointPath):
-        path, seams = _joint_path(path, robot, arm, **shape)
+        path, seams = _joint_path(path, arm, **shape)
         notes += seams
-    _check_positions(path, arm, robot)
+    _check_positions(path, arm)
     fastest = retime_path(arm.solver, path, limits, options)
     acceleration, by_acceleration = _by_acceleration(arm.solver, fastest, limits, options)
     timed = fastest
@@ -252,12 +252,12 @@ def sample_times(duration: float, rate: float) -> Floats:
     return np.append(np.arange(0.0, duration, 1.0 / rate), duration)
 
 
-def described_limits(arm: Arm, robot: Robot, given: MotionLimits | None = None) -> MotionLimits:
+def described_limits(arm: Arm, given: MotionLimits | None = None) -> MotionLimits:
     """Limits with those of torque and velocity that aren't given from the robot description.
 
     One number stands for all joints. Raises UserError where a joint has no torque limit.
     """
-    given = given or MotionLimits()
+    robot, given = arm.robot, given or MotionLimits()
     joints = arm.solver.joint_names
     found = {}
     for name in PER_JOINT:
@@ -288,7 +288,7 @@ def _notes_of_velocities(arm: Arm, limits: MotionLimits) -> list[str]:
     ] * bool(free)
 
 
-def _check_positions(path: JointPath, arm: Arm, robot: Robot) -> None:
+def _check_positions(path: JointPath, arm: Arm) -> None:
     """Raise UserError where the path leaves the joints' ranges."""
     q, _, _ = path.states(np.linspace(path.knots[0], path.knots[-1], _PLACES))
     lower, upper = arm.limit("lower", -np.inf), arm.limit("upper", np.inf)
@@ -297,16 +297,16 @@ def _check_positions(path: JointPath, arm: Arm, robot: Robot) -> None:
         if least < lower[j] - _ROUNDING or most > upper[j] + _ROUNDING:
             raise UserError(
                 f"path: joint {joint}: expected positions from {lower[j]:g} to {upper[j]:g}, the limits in "
-                f"{robot.urdf or robot.model}, got {least:.4g} to {most:.4g}; change the path, and if waypoints are in "
-                "degrees, convert them (of a table: --scale q=deg)"
+                f"{arm.robot.urdf or arm.robot.model}, got {least:.4g} to {most:.4g}; change the path, and if "
+                "waypoints are in degrees, convert them (of a table: --scale q=deg)"
             )
 
 
 def _joint_path(
-    source: Path | str | ArrayLike, robot: Robot, arm: Arm, **shape: Unpack[PathShape]
+    source: Path | str | ArrayLike, arm: Arm, **shape: Unpack[PathShape]
 ) -> tuple[JointPath, list[str]]:
     """The path, and notes."""
-    waypoints = waypoints_of(source, robot, arm, shape.get("topic", ""))
+    waypoints = waypoints_of(source, arm, shape.get("topic", ""))
     notes: list[str] = []
     if isinstance(source, Path | str) and is_csv(Path(source)):
         waypoints, notes = _unwrapped(waypoints, arm)
@@ -316,7 +316,7 @@ def _joint_path(
     return JointPath.lines(waypoints, deviation, stops), notes
 
 
-def waypoints_of(path: Path | str | ArrayLike, robot: Robot, arm: Arm, topic: str) -> Floats:
+def waypoints_of(path: Path | str | ArrayLike, arm: Arm, topic: str) -> Floats:
     """(m, n) rad, in the order of the chain. Raises UserError."""
     if not isinstance(path, Path | str):
         waypoints = np.asarray(path, dtype=np.float64)
@@ -327,17 +327,17 @@ def waypoints_of(path: Path | str | ArrayLike, robot: Robot, arm: Arm, topic: st
             )
         return waypoints
     path = Path(path)
-    found = _waypoints_of_file(path, robot, arm, topic)
+    found = _waypoints_of_file(path, arm, topic)
     if len(found) < 2:
         raise BagError(f"{path}: expected two waypoints at least, got {len(found)}")
     return found
 
 
-def _waypoints_of_file(path: Path, robot: Robot, arm: Arm, topic: str) -> Floats:
+def _waypoints_of_file(path: Path, arm: Arm, topic: str) -> Floats:
     if path.suffix in (".yaml", ".yml"):
         return _waypoints_of_yaml(path, arm.joint_names)
     if is_csv(path):
-        form = replace(LogFormat.of(robot), rate=1.0)  # without a column of time: it is ignored
+        form = replace(LogFormat.of(arm.robot), rate=1.0)  # without a column of time: it is ignored
         table = open_table(path, topic=topic)
         motion = read_motion(table, arm.recorded_names, form, (POSITION,))
         if table.incomplete:
@@ -369,9 +369,7 @@ def _waypoints_of_yaml(path: Path, joints: Sequence[str]) -> Floats:
     for ignored in ("schema", "times", "source", "rests"):
         top.optional(ignored)
     top.reject_others()
-    rows = [[number.number() for number in row.entries()] for row in positions.entries()]
-    if any(len(row) != len(names) for row in rows):
-        positions.fail(f"rows of {len(names)} numbers, one per joint")
+    rows = [[x.number() for x in row.entries(len(names))] for row in positions.entries()]
     return np.array(rows).reshape(-1, len(names))[:, [names.index(joint) for joint in joints]]
 
 

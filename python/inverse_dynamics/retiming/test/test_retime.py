@@ -263,7 +263,7 @@ def test_a_joint_without_a_velocity_limit_leaves_the_others_theirs(tmp_path):
     element.find("joint[@name='wrist_3_joint']/limit").set("velocity", "0")
     urdf.write_text(ElementTree.tostring(element, encoding="unicode"))
     robot = with_changes(load_robot("ur10_simulated"), urdf=urdf)
-    limits = described_limits(Arm(robot), robot)
+    limits = described_limits(Arm(robot))
     assert limits.velocity[:5].tolist() == [stated[joint] for joint in JOINTS[:5]]
     assert limits.velocity[5] > 1e3
     assert "velocity of wrist_3_joint isn't limited" in retime(WAYPOINTS, robot).notes[-1]

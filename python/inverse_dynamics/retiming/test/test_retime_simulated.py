@@ -82,7 +82,7 @@ def execute(robot: Robot, waypoints: Floats, planned: float, carried: float) -> 
     load = {"payload": {"mass": planned, "center_of_mass": list(CENTER)}}
     known = with_changes(robot, parameters=load) if planned else robot
     own = Arm(known)
-    torque = described_limits(own, known).torque
+    torque = described_limits(own).torque
     fastest = retime(waypoints, known, MotionLimits(torque=SHARE * torque))
     plant = simulated_robot(
         robot,
