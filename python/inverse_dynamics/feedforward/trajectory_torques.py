@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics._core import check_torques
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
 from inverse_dynamics.feedforward.tables import load_lines, load_numbers
@@ -126,8 +127,6 @@ def trajectory_torques(
     UserError
         BagError, RobotError, SolverError.
     """
-    from inverse_dynamics import _core
-
     path = Path(path)
     if not isinstance(robot, Robot):
         robot = load_robot(robot)
@@ -147,9 +146,8 @@ def trajectory_torques(
     progress("computing", 0, len(states))
     torques = [solver.torques(*state) if len(time) else state[0] for time, state in states]
     for number, computed in enumerate(torques, 1):
-        _core.check_torques(
-            f"{path}, trajectory {number}", list(solver.joint_names), list(arm.units), computed
-        )
+        where = f"{path}, trajectory {number}"
+        check_torques(where, list(solver.joint_names), list(arm.units), computed)
     progress("computing", len(states), len(states))
     return TrajectoryTorques(
         path=path,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics._core import RobotDescription
+from inverse_dynamics._core import RobotDescription, effort_options, recorded_names
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.robots.descriptions import parse_description, read_description
 from inverse_dynamics.robots.located_yaml import read_mapping
@@ -28,14 +28,12 @@ class Arm:
     """The arm of a run configuration, before a recording is read. Raises UserError."""
 
     def __init__(self, robot: Robot) -> None:
-        from inverse_dynamics import _core
-
         description = "" if robot.urdf is None else read_description(robot.urdf)
         self.description = description
         self.solver = open_solver(robot, description)
         self.joint_names = tuple(self.solver.joint_names)
-        self.recorded_names = tuple(_core.recorded_names(robot, list(self.joint_names)))
-        _core.effort_options(robot, self.solver)  # drive gains that don't fit are refused
+        self.recorded_names = tuple(recorded_names(robot, list(self.joint_names)))
+        effort_options(robot, self.solver)  # drive gains that don't fit are refused
         if description:
             # also where the solver doesn't read it
             parse_description(description, robot.urdf)

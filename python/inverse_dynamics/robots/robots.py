@@ -12,21 +12,10 @@ keys and wrong types are errors with file, line and key.
 
 from __future__ import annotations
 
-from inverse_dynamics._core import (
-    Robot,
-    load_robot,
-    robot_names,
-    robot_of_description,
-    with_changes,
-)
-
-__all__ = [
-    "RIGID_BODY",
-    "Robot",
-    "load_robot",
-    "robot_names",
-    "robot_of_description",
-    "with_changes",
-]
+from inverse_dynamics._core import Robot as Robot
+from inverse_dynamics._core import load_robot as load_robot
+from inverse_dynamics._core import robot_names as robot_names
+from inverse_dynamics._core import robot_of_description as robot_of_description
+from inverse_dynamics._core import with_changes as with_changes
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"

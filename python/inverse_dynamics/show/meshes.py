@@ -153,9 +153,8 @@ def simplified(part: MeshPart, most: int) -> MeshPart:
     The grid is as fine as that allows; 20 bisections of its width find it.
     """
     low, extent = part.vertices.min(axis=0), float(np.ptp(part.vertices, axis=0).max()) or 1.0
-    found = _clustered(
-        part, low, 1e-6 * extent
-    )  # also joins corners that were stored once per triangle
+    # also joins corners that were stored once per triangle
+    found = _clustered(part, low, 1e-6 * extent)
     if _fits(found, most):
         return found
     fine, coarse = 1e-6 * extent, 2.0 * extent

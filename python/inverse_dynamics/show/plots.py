@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +13,7 @@ from inverse_dynamics.show import palette
 from inverse_dynamics.wording import printable, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
     from typing import Any
 
@@ -47,6 +46,7 @@ STYLE: Any = {
     "xtick.color": _MUTED,
     "ytick.color": _MUTED,
     "svg.fonttype": "none",
+    "svg.hashsalt": "inverse_dynamics",
     "pdf.fonttype": 42,
     "text.parse_math": False,  # a name may hold $
     "path.simplify": True,
@@ -66,21 +66,14 @@ def save_figure(make: Callable[[], Figure], *files: Path) -> None:
     """Save what `make` draws, in the common style. The same figure, the same bytes."""
     if not files:
         return
-    with _styled(make) as figure:
+    import matplotlib as mpl
+
+    with mpl.rc_context(STYLE):
+        figure = make()
+        make_printable(figure)
         for file in files:
             metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(file.suffix)
             figure.savefig(file, dpi=160, metadata=metadata)
-
-
-@contextmanager
-def _styled(make: Callable[[], Figure]) -> Iterator[Figure]:
-    import matplotlib as mpl
-
-    settings: Any = {**STYLE, "svg.hashsalt": "inverse_dynamics"}
-    with mpl.rc_context(settings):
-        figure = make()
-        make_printable(figure)
-        yield figure
 
 
 def make_printable(figure: Figure) -> None:

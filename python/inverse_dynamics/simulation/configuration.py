@@ -51,9 +51,8 @@ class StatedSimulation:
     @classmethod
     def of(cls, robot: Robot, joint_names: Sequence[str]) -> StatedSimulation:
         """Reads them. Raises RobotError with file, line and key."""
-        if (
-            robot.file == robot.urdf or not robot.file.is_file()
-        ):  # made of a description, or by a program
+        # made of a description, or by a program
+        if robot.file == robot.urdf or not robot.file.is_file():
             return cls()
         value = read_mapping(robot.file, RobotError).optional("simulation")
         if value is None:

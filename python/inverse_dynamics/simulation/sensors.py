@@ -89,10 +89,8 @@ class EffortNoise:
         before = np.floor(place + 1e-6).astype(int)
         share = np.maximum(place - before, 0.0)[:, None]
         centered = self.residuals - self.residuals.mean(axis=0)
-        noise: Floats = (1 - share) * centered[before % count] + share * centered[
-            (before + 1) % count
-        ]
-        return noise
+        here, next_one = centered[before % count], centered[(before + 1) % count]
+        return np.asarray((1 - share) * here + share * next_one)
 
 
 @dataclass(frozen=True)
@@ -222,6 +220,5 @@ class Sensors:
         offsets = np.round(1e9 * jittered).astype(np.int64)
         order = np.arange(len(time))
         apart = np.maximum.accumulate(offsets - order) + order
-        return (
-            apart - min(0, int(apart[0])) + round(self.start_stamp * 1e9)
-        )  # never before the start
+        # never before the start
+        return apart - min(0, int(apart[0])) + round(self.start_stamp * 1e9)

@@ -257,9 +257,8 @@ _QUINTICS = (
 def _smooth_derivatives(times: Floats, positions: Floats) -> tuple[Floats, Floats]:
     """Velocities and accelerations (K, n) of the waypoints that make third and fourth derivatives continuous."""
     count, joints = positions.shape
-    matrix = np.zeros(
-        (2 * count, 2 * count)
-    )  # unknowns: velocity and acceleration of each waypoint
+    # unknowns: velocity and acceleration of each waypoint
+    matrix = np.zeros((2 * count, 2 * count))
     right = np.zeros((2 * count, joints))
     # at rest at both ends
     for row, unknown in enumerate((0, 1, 2 * count - 2, 2 * count - 1)):
