@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
-    from inverse_dynamics.errors import UserError
-
 _MOST_LEVELS = 50
 
 
@@ -56,10 +54,8 @@ def read_description(file: Path) -> str:
     return text
 
 
-def parse_description(
-    text: str, where: object = "robot description", raised: type[UserError] = RobotError
-) -> Element:
-    """The element <robot> of a URDF. Raises that error for what isn't one."""
+def parse_description(text: str, where: object = "robot description") -> Element:
+    """The element <robot> of a URDF. Raises RobotError for what isn't one."""
     import xml.etree.ElementTree as ElementTree
 
     class Builder(ElementTree.TreeBuilder):
@@ -69,20 +65,20 @@ def parse_description(
     try:
         robot = ElementTree.fromstring(text, ElementTree.XMLParser(target=Builder()))
     except _DocumentTypeError:
-        raise raised(
+        raise RobotError(
             f"{where}: expected no document type, got one; no URDF needs it: remove it"
         ) from None
     except (ElementTree.ParseError, ValueError) as error:
-        raise raised(f"{where}: isn't a robot description: no XML ({error})") from error
+        raise RobotError(f"{where}: isn't a robot description: no XML ({error})") from error
     if robot.tag != "robot":
-        raise raised(
+        raise RobotError(
             f"{where}: expected the element <robot>, got <{harmless(robot.tag)}>; give a URDF"
         )
     level = [robot]
     for _ in range(_MOST_LEVELS):
         level = [element for parent in level for element in parent]
     if level:
-        raise raised(f"{where}: expected at most {_MOST_LEVELS} levels of elements, got more")
+        raise RobotError(f"{where}: expected at most {_MOST_LEVELS} levels of elements, got more")
     return robot
 
 

@@ -42,9 +42,9 @@ def _check_links(robot: Robot, description: str, solver: _core.Solver) -> None:
             f"robot {robot.name}: {given}: expected none, as {robot.plugin} brings its own model and "
             "there is no description to check them with; leave them out"
         )
-    own, reader = list(solver.joint_names), replace(robot, plugin=RIGID_BODY)
-    reader = replace(reader, gravity=None, parameters={"allow_massless": True})
-    chain = list(make_solver(reader, description).joint_names)
+    parameters = {"allow_massless": True}
+    reader = replace(robot, plugin=RIGID_BODY, gravity=None, parameters=parameters)
+    own, chain = solver.joint_names, make_solver(reader, description).joint_names
     # joints of other names may be the same ones
     if chain != own if set(chain) & set(own) else len(chain) != len(own):
         raise RobotError(

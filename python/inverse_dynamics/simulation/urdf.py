@@ -52,8 +52,8 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
 
     Movable joints that don't lie between the two are locked at zero. Raises SimulationError.
     """
-    robot = parse_description(text, raised=SimulationError)
     try:
+        robot = parse_description(text)
         names = FastModel.from_urdf(text, root=root, tip=tip).joint_names
         described = RobotDescription(text)
         joints = described.chain(names, root)
