@@ -38,8 +38,8 @@ void bindTiming(pybind11::module_& module);
 /// object in it.
 void explainWrongCalls(pybind11::module_& module);
 
-/// Throws ArgumentError.
-[[noreturn]] void throwArgumentError(const std::string& text);
+/// Throws the exception of that name of inverse_dynamics.errors.
+[[noreturn]] void throwError(const char* name, const std::string& text);
 
 /// The solver inside an object of class Solver; it outlives the object if need be.
 ///

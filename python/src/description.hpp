@@ -10,7 +10,7 @@
 
 namespace inverse_dynamics_tools {
 
-/// An argument `urdf`. A path is read as read_description() of Python does, .xacro files included.
+/// An argument `urdf`. A path is read by readDescription(), .xacro files included.
 struct Description {
   std::string text;
 };
@@ -27,6 +27,15 @@ inline pybind11::str textOf(const std::string& text) {
       text.data(), static_cast<pybind11::ssize_t>(text.size()), "surrogateescape");
   if (made == nullptr) throw pybind11::error_already_set();
   return pybind11::reinterpret_steal<pybind11::str>(made);
+}
+
+/// The description in a file, as read_description() of Python reads it.
+///
+/// @throws RobotError  of Python: the file can't be read.
+inline std::string readDescription(const pybind11::object& path) {
+  const auto descriptions = pybind11::module_::import("inverse_dynamics.robots.descriptions");
+  const auto as_path = pybind11::module_::import("pathlib").attr("Path");
+  return descriptions.attr("read_description")(as_path(path)).cast<std::string>();
 }
 
 /// Whether a text names a file: no URDF ends like this.
@@ -69,15 +78,12 @@ template <>
 struct type_caster<inverse_dynamics_tools::Description> {
   PYBIND11_TYPE_CASTER(inverse_dynamics_tools::Description, const_name("str | pathlib.Path"));
 
-  /// @throws RobotError  of Python: the file can't be read.
   bool load(handle source, bool) {
     const bool is_text = isinstance<str>(source);
     if (!is_text && !hasattr(source, "__fspath__")) return false;
     if (is_text) value.text = source.cast<std::string>();
     if (is_text && !inverse_dynamics_tools::namesDescription(value.text)) return true;
-    const object path = module_::import("pathlib").attr("Path")(source);
-    const auto descriptions = module_::import("inverse_dynamics.robots.descriptions");
-    value.text = descriptions.attr("read_description")(path).cast<std::string>();
+    value.text = inverse_dynamics_tools::readDescription(reinterpret_borrow<object>(source));
     return true;
   }
 };

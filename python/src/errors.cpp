@@ -62,12 +62,16 @@ std::string inPython(const std::string& of_cpp) {
   return text;
 }
 
+void setError(const char* name, const std::string& text) {
+  const py::object type = py::module_::import("inverse_dynamics.errors").attr(name);
+  PyErr_SetObject(type.ptr(), textOf(text).ptr());
+}
+
 /// Raises the exception of Python for one of C++, if it is of that class.
 template <class Class>
 bool raisedIf(const std::exception& error, const char* name) {
   if (dynamic_cast<const Class*>(&error) == nullptr) return false;
-  const py::object type = py::module_::import("inverse_dynamics.errors").attr(name);
-  PyErr_SetObject(type.ptr(), textOf(inPython(error.what())).ptr());
+  setError(name, inPython(error.what()));
   return true;
 }
 
@@ -95,9 +99,8 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
-void throwArgumentError(const std::string& text) {
-  const py::object type = py::module_::import("inverse_dynamics.errors").attr("ArgumentError");
-  PyErr_SetString(type.ptr(), text.c_str());
+void throwError(const char* name, const std::string& text) {
+  setError(name, text);
   throw py::error_already_set();
 }
 

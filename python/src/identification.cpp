@@ -153,23 +153,14 @@ Array torques(const ArmFitter& fitter, const ArmFit& of, const Array& q, const A
 
 std::tuple<Array, Array, Array> information(const ArmFitter& fitter, const ArmFit& of,
                                             const HeldData& held, const ArmFitOptions& options) {
-  identification::ArmInformation found;
-  {
-    const py::gil_scoped_release release;
-    found = fitter.information(of, held.data, options);
-  }
+  auto found = unlocked([&] { return fitter.information(of, held.data, options); });
   return {rowsOf(std::move(found.data)), rowsOf(std::move(found.prior)),
           rowsOf(std::move(found.scores))};
 }
 
 Array whitenedInformation(const ArmFitter& fitter, const ArmFit& of, const HeldData& held,
                           FrictionTerms law, const identification::ResidualNoise& noise) {
-  chain_dynamics::OwnedMatrix found;
-  {
-    const py::gil_scoped_release release;
-    found = fitter.whitenedInformation(of, law, held.data, noise);
-  }
-  return rowsOf(std::move(found));
+  return rowsOf(unlocked([&] { return fitter.whitenedInformation(of, law, held.data, noise); }));
 }
 
 /// (n, 10).

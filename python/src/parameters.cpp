@@ -37,10 +37,12 @@ ids::ParameterValue parameterOf(const std::string& name, const py::handle& value
     if (allAre<py::int_>(value)) return value.cast<std::vector<std::int64_t>>();
     if (allAre<py::float_, py::int_>(value)) return value.cast<std::vector<double>>();
   }
-  throwArgumentError(ids::errorText(
-      "parameter '" + name + "'", "",
-      "bool, int, float, str, a list of one of them, or a dict of parameters below this name",
-      py::str(py::type::of(value).attr("__name__"))));
+  throwError(
+      "ArgumentError",
+      ids::errorText(
+          "parameter '" + name + "'", "",
+          "bool, int, float, str, a list of one of them, or a dict of parameters below this name",
+          py::str(py::type::of(value).attr("__name__"))));
 }
 
 }  // namespace

@@ -17,7 +17,6 @@
 
 #include "annotations.hpp"
 #include "bindings.hpp"
-#include "description.hpp"
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -32,17 +31,11 @@ struct DescribedJoint : RobotDescription::Joint {
   std::string child_link;
 };
 
-[[noreturn]] void throwRobotError(const std::string& text) {
-  const py::object type = py::module_::import("inverse_dynamics.errors").attr("RobotError");
-  PyErr_SetObject(type.ptr(), textOf(text).ptr());
-  throw py::error_already_set();
-}
-
 RobotDescription descriptionOf(const std::string& urdf) {
   try {
     return chain_dynamics::robotFromUrdf(urdf);
   } catch (const chain_dynamics::ModelError& error) {
-    throwRobotError(error.what());
+    throwError("RobotError", error.what());
   }
 }
 
@@ -54,7 +47,7 @@ std::size_t linkOf(const RobotDescription& robot, const std::string& name) {
   if (name.empty()) return robot.root;
   const std::size_t link = robot.linkIndex(name);
   if (link != RobotDescription::kNone) return link;
-  throwRobotError("robot description: expected a link '" + name + "', got none");
+  throwError("RobotError", "robot description: expected a link '" + name + "', got none");
 }
 
 /// A link and the links above it to which it is fixed, upwards; each with its pose in the frame of
@@ -90,16 +83,16 @@ DescribedJoint placedIn(const RobotDescription& robot, std::size_t link, std::si
     placed.placement = robot.joints[next].placement * placed.placement;
     at = robot.joints[next].parent;
   }
-  throwRobotError("robot description: joint " + placed.name + ": expected it below link " +
-                  placed.parent_link +
-                  ", or below one that is fixed to it; choose a root nearer to that of the "
-                  "description");
+  throwError("RobotError", "robot description: joint " + placed.name + ": expected it below link " +
+                               placed.parent_link +
+                               ", or below one that is fixed to it; choose a root nearer to that "
+                               "of the description");
 }
 
 std::size_t jointOf(const RobotDescription& robot, const std::string& name) {
   const std::size_t joint = robot.jointIndex(name);
   if (joint != RobotDescription::kNone) return joint;
-  throwRobotError("robot description: expected a joint '" + name + "', got none");
+  throwError("RobotError", "robot description: expected a joint '" + name + "', got none");
 }
 
 std::vector<DescribedJoint> chainOf(const RobotDescription& robot,

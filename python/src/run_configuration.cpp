@@ -25,8 +25,7 @@ using Robot = evaluation::RunConfiguration;
 
 py::object pathOf(const std::string& path) {
   if (path.empty()) return py::none();
-  return py::module_::import("pathlib").attr("Path")(
-      py::module_::import("os").attr("fsdecode")(py::bytes(path)));
+  return py::module_::import("pathlib").attr("Path")(textOf(path));
 }
 
 /// A field that holds a path; empty: None. Got: its type in Python.

@@ -545,12 +545,6 @@ Robot robotOf(const SolverName& named, bool described) {
   return inverse_dynamics_evaluation::readRunConfiguration(text);
 }
 
-std::string descriptionOf(const Robot& robot) {
-  const auto read =
-      py::module_::import("inverse_dynamics.robots.descriptions").attr("read_description");
-  return read(py::module_::import("pathlib").attr("Path")(textOf(robot.urdf))).cast<std::string>();
-}
-
 std::unique_ptr<Solver> makeSolver(const SolverName& named, const Description& urdf,
                                    const std::string& root, const std::string& tip,
                                    const std::optional<std::array<double, 3>>& gravity,
@@ -559,7 +553,7 @@ std::unique_ptr<Solver> makeSolver(const SolverName& named, const Description& u
                                    const ParameterDict& parameters) {
   const Robot robot = robotOf(named, !urdf.text.empty());
   const bool described = urdf.text.empty() && !robot.urdf.empty();
-  Origin origin{robot.plugin, described ? descriptionOf(robot) : urdf.text,
+  Origin origin{robot.plugin, described ? readDescription(textOf(robot.urdf)) : urdf.text,
                 parametersOf(parameters)};
   const auto give = [&](const std::string& name, const ids::ParameterValue& value) {
     if (origin.parameters.emplace(name, value).second) return;

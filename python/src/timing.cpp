@@ -31,7 +31,6 @@ ThreeFloats statesAt(const Eigen::VectorXd& at, Eigen::Index joints, const Evalu
     for (Eigen::Index k = 0; k < at.size(); ++k) {
       evaluate(at[k], q.col(k), first.col(k), second.col(k));
     }
-    return 0;
   });
   return {Floats(arrays[0]), Floats(arrays[1]), Floats(arrays[2])};
 }
@@ -133,8 +132,7 @@ void bindTiming(py::module_& module) {
       "speed_limit",
       [](const SolverObject& solver, const T& trajectory, const L& limits, const O& options) {
         const auto held = solverOf(solver);
-        const auto limit = unlocked([&] { return speedLimit(*held, trajectory, limits, options); });
-        return arrayOf(limit);
+        return arrayOf(unlocked([&] { return speedLimit(*held, trajectory, limits, options); }));
       },
       py::arg("solver"), py::arg("trajectory"), py::arg("limits"), py::arg("options") = O(),
       "(K,) the greatest ds/dt for which limits can be kept for an instant, at a grid's points.");

@@ -31,7 +31,6 @@ void bindYaml(py::module_& module) {
   py::class_<LocatedValue>(module, "YamlValue", "A value of a YAML file and where it stands.")
       .def_property_readonly("where", &LocatedValue::where, "`file:line: key`, as errors begin.")
       .def_property_readonly("is_list", &LocatedValue::isList)
-      .def_property_readonly("is_mapping", &LocatedValue::isMap)
       .def(
           "fail",
           [](const LocatedValue& value, const std::string& expected, const std::string& remedy) {
