@@ -12,6 +12,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 namespace evaluation = inverse_dynamics_evaluation;
 
 Eigen::Map<const Eigen::VectorXd> vectorIn(const Array& array) {
@@ -60,23 +61,21 @@ Array lowPass(const Array& samples, double sampling_frequency, double cutoff, in
 }  // namespace
 
 void bindAccelerations(py::module_& module) {
-  module.def("backward_difference", &backwardDifference, py::arg("time"), py::arg("qd"),
+  module.def("backward_difference", &backwardDifference, "time"_a, "qd"_a,
              "(qd[k] - qd[k-1]) / (t[k] - t[k-1]); the first sample zero. time: (N,); qd: (N, n).");
   module.def(
-      "low_pass_accelerations", &lowPassAccelerations, py::arg("time"), py::arg("q"), py::arg("qd"),
-      py::arg("effort"), py::arg("cutoff") = 0.0,
+      "low_pass_accelerations", &lowPassAccelerations, "time"_a, "q"_a, "qd"_a, "effort"_a,
+      "cutoff"_a = 0.0,
       "Accelerations by a zero-phase low-pass of the velocities, then their derivative; and\n"
       "when the samples were taken.\n\n"
       "time: (N,) s. q, qd, effort: (N, n). cutoff: Hz; 0: chosen from the data. Returns qdd,\n"
       "(N, n), instants, (N,) s, the cut-off and the frequency of the samples, Hz.");
   module.def(
-      "sample_instants", &sampleInstants, py::arg("time"), py::arg("q"), py::arg("qd"),
-      py::arg("effort"),
+      "sample_instants", &sampleInstants, "time"_a, "q"_a, "qd"_a, "effort"_a,
       "(N,) s: when recorded joint states were taken, by their stamps and what they tell.\n\n"
       "time: (N,) s. q, qd, effort: (N, n).");
-  module.def("low_pass", &lowPass, py::arg("samples"), py::arg("sampling_frequency"),
-             py::arg("cutoff"), py::arg("order") = 2, py::arg("padding") = -1,
-             "Zero-phase Butterworth low-pass of equidistant samples (N, n).");
+  module.def("low_pass", &lowPass, "samples"_a, "sampling_frequency"_a, "cutoff"_a, "order"_a = 2,
+             "padding"_a = -1, "Zero-phase Butterworth low-pass of equidistant samples (N, n).");
 }
 
 }  // namespace inverse_dynamics_tools

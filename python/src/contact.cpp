@@ -21,6 +21,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 using namespace inverse_dynamics_control;
 using Vector = Eigen::VectorXd;
 using Mask = py::array_t<bool, py::array::c_style | py::array::forcecast>;
@@ -156,20 +157,18 @@ void bindEstimators(py::module_& module) {
               Field{"longest_period", &O::longest_period});
   py::class_<ExternalTorqueEstimator>(module, "ExternalTorqueEstimator",
                                       "External torques of each joint, N m.")
-      .def("update", &update, py::arg("q"), py::arg("effort"), py::arg("period"),
-           py::arg("qd") = py::none(), "(torques, EstimateStatus).")
-      .def("run", &runEstimator, py::arg("time"), py::arg("q"), py::arg("effort"),
-           py::arg("qd") = py::none(),
+      .def("update", &update, "q"_a, "effort"_a, "period"_a, "qd"_a = py::none(),
+           "(torques, EstimateStatus).")
+      .def("run", &runEstimator, "time"_a, "q"_a, "effort"_a, "qd"_a = py::none(),
            "(N, n) torques and (N,) whether they are estimates, of N samples.")
       .def("reset", &ExternalTorqueEstimator::reset, "The next sample is the first one.")
       .def_property_readonly("torques", &ExternalTorqueEstimator::torques, "(n,) N m.");
   py::class_<MomentumObserver, ExternalTorqueEstimator>(module, "MomentumObserver",
                                                         "From the generalised momentum H(q) qd.")
-      .def(ofSolver<MomentumObserver, EstimatorOptions>(), py::arg("solver"), py::arg("options"));
+      .def(ofSolver<MomentumObserver, EstimatorOptions>(), "solver"_a, "options"_a);
   py::class_<AccelerationResidual, ExternalTorqueEstimator>(
       module, "AccelerationResidual", "Measured minus computed torques, low-passed.")
-      .def(ofSolver<AccelerationResidual, EstimatorOptions>(), py::arg("solver"),
-           py::arg("options"));
+      .def(ofSolver<AccelerationResidual, EstimatorOptions>(), "solver"_a, "options"_a);
 }
 
 void bindThresholds(py::module_& module) {
@@ -194,7 +193,7 @@ void bindThresholds(py::module_& module) {
         const py::gil_scoped_release release;
         return contactThresholds(columns, period, false_alarms_per_hour, joint_names);
       },
-      py::arg("quiet"), py::arg("period"), py::arg("false_alarms_per_hour"), py::arg("joint_names"),
+      "quiet"_a, "period"_a, "false_alarms_per_hour"_a, "joint_names"_a,
       "From external torques (N, n) without contact, period [s] apart, all of them estimates.");
 }
 
@@ -205,16 +204,16 @@ void bindDetector(py::module_& module) {
                        double release_share, double release_time) {
              return ContactDetector(thresholds, {release_share, release_time}, joint_names);
            }),
-           py::arg("thresholds"), py::arg("joint_names"), py::kw_only(),
-           py::arg("release_share") = usual.share, py::arg("release_time") = usual.time)
+           "thresholds"_a, "joint_names"_a, py::kw_only(), "release_share"_a = usual.share,
+           "release_time"_a = usual.time)
       .def(
           "update",
           [](ContactDetector& detector, const Vector& torques, double period) {
             return detector.update(torques, period);
           },
-          py::arg("torques"), py::arg("period"),
+          "torques"_a, "period"_a,
           "Whether something touches the robot; torques: (n,) N m, period: s.")
-      .def("run", &runDetector, py::arg("time"), py::arg("torques"), py::arg("valid") = py::none(),
+      .def("run", &runDetector, "time"_a, "torques"_a, "valid"_a = py::none(),
            "(N,) The same of N samples. valid: (N,) those that are looked at; in the others a "
            "contact\n"
            "stays as it is. None: all.")
@@ -243,17 +242,16 @@ void bindTipWrench(py::module_& module) {
                  options.torque = torque;
                  return std::make_unique<TipWrench>(solverOf(solver), options);
                }),
-           py::arg("solver"), py::arg("noise"), py::kw_only(),
-           py::arg("force") = WrenchOptions().force, py::arg("torque") = WrenchOptions().torque,
-           "noise: (n,) N m; force: N; torque: N m.")
+           "solver"_a, "noise"_a, py::kw_only(), "force"_a = WrenchOptions().force,
+           "torque"_a = WrenchOptions().torque, "noise: (n,) N m; force: N; torque: N m.")
       .def(
           "update",
           [](TipWrench& tip, const Vector& q, const Vector& torques) {
             const WrenchStatus status = tip.update(q, torques);
             return std::pair{numbersOf(tip.wrench()), status};
           },
-          py::arg("q"), py::arg("torques"), "((6,) force and torque, WrenchStatus).")
-      .def("run", &runTipWrench, py::arg("q"), py::arg("torques"),
+          "q"_a, "torques"_a, "((6,) force and torque, WrenchStatus).")
+      .def("run", &runTipWrench, "q"_a, "torques"_a,
            "(N, 6) forces and torques, (N,) how many directions can't be seen, of N samples.")
       .def_property_readonly(
           "signal_to_noise", [](const TipWrench& tip) -> Vector { return tip.signalToNoise(); },

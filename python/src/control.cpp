@@ -18,6 +18,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 using namespace inverse_dynamics_control;
 using Vector = Eigen::VectorXd;
 using Result = std::pair<Vector, Status>;
@@ -165,8 +166,7 @@ void bindLawOptions(py::module_& module) {
                  Field{"Kp", &Gains::Kp}, Field{"Kd", &Gains::Kd})
       .def_static(
           "of", [](const Vector& w, const Vector& z) { return Gains::of(w, z); },
-          py::arg("natural_frequency"), py::arg("damping_ratio"),
-          "Kp = w^2, Kd = 2 z w; w in rad/s.");
+          "natural_frequency"_a, "damping_ratio"_a, "Kp = w^2, Kd = 2 z w; w in rad/s.");
 }
 
 void bindLaws(py::module_& module) {
@@ -176,8 +176,8 @@ void bindLaws(py::module_& module) {
           [](ControlLaw& law, const std::optional<Vector>& effort) {
             effort ? law.start(*effort) : law.start();
           },
-          py::arg("effort") = py::none(), "The loop begins; with the effort that acts now.")
-      .def("hold", &hold, py::arg("q"), py::arg("qd"), py::arg("period"),
+          "effort"_a = py::none(), "The loop begins; with the effort that acts now.")
+      .def("hold", &hold, "q"_a, "qd"_a, "period"_a,
            "(tau, Status) of the safe torque g(q) - damping qd.")
       .def_property_readonly(
           "saturated", [](const ControlLaw& law) { return law.saturated(); },
@@ -187,35 +187,32 @@ void bindLaws(py::module_& module) {
           "(n,) Whether the last torque was held back by its rate limit.");
   py::class_<ComputedTorque, ControlLaw>(
       module, "ComputedTorque", "tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f.")
-      .def(ofSolver<ComputedTorque, Gains, LawOptions>(), py::arg("solver"), py::arg("gains"),
-           py::arg("options"))
-      .def("update", &computedTorque, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
-           py::arg("qd_reference"), py::arg("qdd_reference"), py::kw_only(), py::arg("period"),
-           "(tau, Status).")
-      .def("set_gains", &setGains<ComputedTorque, Gains>, py::arg("gains"),
+      .def(ofSolver<ComputedTorque, Gains, LawOptions>(), "solver"_a, "gains"_a, "options"_a)
+      .def("update", &computedTorque, "q"_a, "qd"_a, "q_reference"_a, "qd_reference"_a,
+           "qdd_reference"_a, py::kw_only(), "period"_a, "(tau, Status).")
+      .def("set_gains", &setGains<ComputedTorque, Gains>, "gains"_a,
            "From the next update on; ValueError, and nothing changed, for bad ones.");
   py::class_<PdGravityCompensation, ControlLaw>(module, "PdGravityCompensation",
                                                 "tau = g(q) + Kp e + Kd ed + f.")
-      .def(ofSolver<PdGravityCompensation, PdGains, LawOptions>(), py::arg("solver"),
-           py::arg("gains"), py::arg("options"))
-      .def("update", &pdGravityCompensation, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
-           py::arg("qd_reference"), py::arg("period"), "(tau, Status).")
-      .def("set_gains", &setGains<PdGravityCompensation, PdGains>, py::arg("gains"),
+      .def(ofSolver<PdGravityCompensation, PdGains, LawOptions>(), "solver"_a, "gains"_a,
+           "options"_a)
+      .def("update", &pdGravityCompensation, "q"_a, "qd"_a, "q_reference"_a, "qd_reference"_a,
+           "period"_a, "(tau, Status).")
+      .def("set_gains", &setGains<PdGravityCompensation, PdGains>, "gains"_a,
            "From the next update on; ValueError, and nothing changed, for bad ones.");
   py::class_<GravityCompensation, ControlLaw>(module, "GravityCompensation",
                                               "tau = g(q) - damping qd + f.")
-      .def(ofSolver<GravityCompensation, LawOptions>(), py::arg("solver"), py::arg("options"))
-      .def("update", &gravityCompensation, py::arg("q"), py::arg("qd"), py::arg("period"),
-           py::arg("qd_reference") = py::none(), "(tau, Status).");
+      .def(ofSolver<GravityCompensation, LawOptions>(), "solver"_a, "options"_a)
+      .def("update", &gravityCompensation, "q"_a, "qd"_a, "period"_a, "qd_reference"_a = py::none(),
+           "(tau, Status).");
   py::class_<FeedForward, ControlLaw>(module, "FeedForward",
                                       "tau = effort + H qdd_ref + C qd + g + f.")
       .def(py::init([](const SolverObject& solver, const LawOptions& options, ModelState at) {
              return FeedForward(solverOf(solver), at, options);
            }),
-           py::arg("solver"), py::arg("options"), py::arg("at") = ModelState::kReference)
-      .def("update", &feedForward, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
-           py::arg("qd_reference"), py::arg("qdd_reference"), py::kw_only(), py::arg("effort"),
-           py::arg("period"), "(tau, Status).");
+           "solver"_a, "options"_a, "at"_a = ModelState::kReference)
+      .def("update", &feedForward, "q"_a, "qd"_a, "q_reference"_a, "qd_reference"_a,
+           "qdd_reference"_a, py::kw_only(), "effort"_a, "period"_a, "(tau, Status).");
 }
 
 void bindDamping(py::module_& module) {
@@ -224,18 +221,18 @@ void bindDamping(py::module_& module) {
       [](const SolverObject& solver, const Vector& q, double rate, double period) {
         return dampingFor(*solverOf(solver), q, rate, period);
       },
-      py::arg("solver"), py::arg("q"), py::arg("rate"), py::arg("period"),
+      "solver"_a, "q"_a, "rate"_a, "period"_a,
       "(n,) Damping rate H_jj(q), N m s/rad; rate: 1/s; period of the loop: s.");
 }
 
 void bindSafeStop(py::module_& module) {
   py::class_<SafeStop>(module, "SafeStop", "Ramps references to a standstill.")
-      .def(py::init<const Vector&, const std::vector<std::string>&>(), py::arg("deceleration"),
-           py::arg("joint_names"))
+      .def(py::init<const Vector&, const std::vector<std::string>&>(), "deceleration"_a,
+           "joint_names"_a)
       .def(
           "begin",
           [](SafeStop& stop, const Vector& q, const Vector& qd) { return stop.begin(q, qd); },
-          py::arg("q"), py::arg("qd"))
+          "q"_a, "qd"_a)
       .def(
           "advance",
           [](SafeStop& stop, double period) -> std::tuple<Vector, Vector, Vector> {
@@ -245,7 +242,7 @@ void bindSafeStop(py::module_& module) {
             }
             return {reference.q, reference.qd, reference.qdd};
           },
-          py::arg("period"), "(q, qd, qdd) of the reference, one period later.")
+          "period"_a, "(q, qd, qdd) of the reference, one period later.")
       .def_property_readonly("finished", &SafeStop::finished)
       .def_property_readonly("duration", &SafeStop::duration, "s.");
 }

@@ -29,6 +29,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 namespace evaluation = inverse_dynamics_evaluation;
 using evaluation::Effort;
 using evaluation::EffortVerdict;
@@ -83,8 +84,8 @@ void bindErrors(py::module_& module) {
       number("bias", &JointError::bias, "mean error: positive where too much is computed"),
       number("r2", &JointError::r2, "coefficient of determination"),
       number("max_abs", &JointError::max_abs, "greatest absolute error"));
-  module.def("joint_errors", &errorsOf, py::arg("joint_names"), py::arg("units"),
-             py::arg("computed"), py::arg("measured"), py::arg("kept") = py::none(),
+  module.def("joint_errors", &errorsOf, "joint_names"_a, "units"_a, "computed"_a, "measured"_a,
+             "kept"_a = py::none(),
              "Errors of each joint: of all samples, or of those where kept (N,) is true.\n\n"
              "computed, measured: (N, n).");
 }
@@ -147,7 +148,7 @@ void bindEffort(py::module_& module) {
             const ConstMap efforts = states(recorded, "effort");
             return rowsOf(effort.torques(efforts));
           },
-          py::arg("effort"),
+          "effort"_a,
           "Measured torques (N, n) [N m] of recorded efforts; without gravity if these are.");
   py::class_<evaluation::EffortOptions>(module, "EffortOptions",
                                         "What is stated of efforts, and by whom: effort_options().")
@@ -169,13 +170,13 @@ void bindEvaluated(py::module_& module) {
       .def(
           "errors",
           [](E e, const Names& units) { return jointErrors(e.joint_names, units, e.errors); },
-          py::arg("units"), "Of all samples.")
+          "units"_a, "Of all samples.")
       .def(
           "errors_of_kept",
           [](E e, const Names& units) {
             return jointErrors(e.joint_names, units, e.errors_of_kept);
           },
-          py::arg("units"), "Of those that were kept.")
+          "units"_a, "Of those that were kept.")
       .def_readonly("notes", &Evaluated::notes);
 }
 
@@ -320,24 +321,20 @@ void bindEvaluator(py::module_& module) {
   bindEvaluated(module);
   bindEvaluationOptions(module);
   module.def(
-      "read_motion", &readMotion, py::arg("solver"), py::arg("motion"), py::arg("options"),
-      py::arg("progress"),
+      "read_motion", &readMotion, "solver"_a, "motion"_a, "options"_a, "progress"_a,
       "Samples of recorded joint states, their faults and accelerations.\n\n"
       "motion: a JointLog, or a Recording, whose topic is read. progress: called with the share\n"
       "that is done.");
-  module.def("compute_torques", &computeTorques, py::arg("motion"), py::arg("solver"),
-             py::arg("options"), py::arg("progress"),
+  module.def("compute_torques", &computeTorques, "motion"_a, "solver"_a, "options"_a, "progress"_a,
              "Torques of what read_motion() gave, with gravity.");
-  module.def("compare_torques", &compareTorques, py::arg("motion"), py::arg("solver"),
-             py::arg("options"), py::arg("progress"), py::arg("subtracted"),
-             py::arg("verdict") = py::none(),
+  module.def("compare_torques", &compareTorques, "motion"_a, "solver"_a, "options"_a, "progress"_a,
+             "subtracted"_a, "verdict"_a = py::none(),
              "Measured torques and errors of what compute_torques() computed.\n\n"
              "subtracted: a solver, whose gravity efforts without gravity lack. verdict: what the "
              "data say\n"
              "of efforts that are `auto`.");
-  module.def("check_options", &checkOptions, py::arg("method"), py::arg("cutoff"),
-             py::arg("without_rules"), py::arg("effort_is"),
-             "Raise EvaluationError for what no recording can be evaluated with.");
+  module.def("check_options", &checkOptions, "method"_a, "cutoff"_a, "without_rules"_a,
+             "effort_is"_a, "Raise EvaluationError for what no recording can be evaluated with.");
   module.def(
       "check_torques",
       [](const std::string& where, const Names& joint_names, const Names& units,
@@ -345,7 +342,7 @@ void bindEvaluator(py::module_& module) {
         evaluation::requirePossibleTorques(where, joint_names, units, states(computed, "computed"),
                                            0);
       },
-      py::arg("where"), py::arg("joint_names"), py::arg("units"), py::arg("computed"),
+      "where"_a, "joint_names"_a, "units"_a, "computed"_a,
       "Raise EvaluationError for (N, n) computed torques that no robot has, infinite ones too.");
 }
 

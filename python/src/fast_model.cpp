@@ -32,6 +32,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 namespace ids = inverse_dynamics_solver;
 using Eigen::Index;
 
@@ -182,10 +183,10 @@ std::unique_ptr<FastModel> fromJoints(const std::vector<std::string>& names,
 }
 
 void bindMaking(py::class_<FastModel>& model) {
-  const auto gravity = py::arg("gravity"), threads = py::arg("threads");
+  const auto gravity = "gravity"_a, threads = "threads"_a;
   model
-      .def_static("from_urdf", &fromUrdf, py::arg("urdf"), py::kw_only(), py::arg("root") = "",
-                  py::arg("tip") = "", gravity = py::none(), threads = 1,
+      .def_static("from_urdf", &fromUrdf, "urdf"_a, py::kw_only(), "root"_a = "", "tip"_a = "",
+                  gravity = py::none(), threads = 1,
                   R"(Of a URDF, without the friction that it states.
 
 Parameters
@@ -198,11 +199,10 @@ gravity : sequence of 3 floats, optional
     m/s^2, in the axes of the root link.
 threads : int, optional
     Among how many a large batch is shared.)")
-      .def_static("from_file", &fromFile, py::arg("path"), py::kw_only(), threads = 1,
+      .def_static("from_file", &fromFile, "path"_a, py::kw_only(), threads = 1,
                   "Of a model file, with its friction.")
-      .def_static("from_joints", &fromJoints, py::arg("names"), py::arg("prismatic"),
-                  py::arg("rotations"), py::arg("offsets"), py::arg("links"), py::kw_only(),
-                  gravity, threads = 1,
+      .def_static("from_joints", &fromJoints, "names"_a, "prismatic"_a, "rotations"_a, "offsets"_a,
+                  "links"_a, py::kw_only(), gravity, threads = 1,
                   R"(Of joints about or along z of their links' frames.
 
 Parameters
@@ -267,10 +267,10 @@ Examples
   bindMaking(model);
   bindQuantities(model);
   model
-      .def("identified", &identified, py::arg("found"),
+      .def("identified", &identified, "found"_a,
            "The same chain with links, rotors and friction that were identified.")
-      .def("file_text", &fileText, py::kw_only(), py::arg("name"), py::arg("source"),
-           py::arg("validity"), "The text of a model file, of which from_file() makes this model.")
+      .def("file_text", &fileText, py::kw_only(), "name"_a, "source"_a, "validity"_a,
+           "The text of a model file, of which from_file() makes this model.")
       .def_property_readonly(
           "joint_names", [](const FastModel& m) { return tupleOf(m.joints()); },
           "Names of the joints, from root to tip: the order of all arrays.")

@@ -75,6 +75,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 namespace identification = inverse_dynamics_identification;
 using identification::ArmFit;
 using identification::ArmFitOptions;
@@ -214,10 +215,9 @@ void bindIdentification(py::module_& module) {
   py::class_<ArmFitter>(module, "ArmFitter",
                         "Fits models of one arm: arm_fit.hpp. Threads: safe; the GIL is released.")
       .def_static(
-          "from_urdf", &fitterFromUrdf, py::arg("urdf"), py::kw_only(), py::arg("root") = "",
-          py::arg("tip") = "", py::arg("gravity") = py::none(),
-          py::arg("locked_joints") = std::map<std::string, double>(),
-          py::arg("coupling") = py::none(),
+          "from_urdf", &fitterFromUrdf, "urdf"_a, py::kw_only(), "root"_a = "", "tip"_a = "",
+          "gravity"_a = py::none(), "locked_joints"_a = std::map<std::string, double>(),
+          "coupling"_a = py::none(),
           "Of a URDF's text, whose links are the prior. locked_joints: positions of joints\n"
           "beside the chain, else 0. coupling: (n, n), friction is of motors with velocities\n"
           "`coupling qd`.")
@@ -242,8 +242,8 @@ void bindIdentification(py::module_& module) {
             return changes;
           },
           "What the prior has changed about each described link, in words; empty: nothing.")
-      .def("data", &dataOf, py::arg("blocks"), py::kw_only(), py::arg("carried") = Carried(),
-           py::arg("times") = std::vector<Vector>(),
+      .def("data", &dataOf, "blocks"_a, py::kw_only(), "carried"_a = Carried(),
+           "times"_a = std::vector<Vector>(),
            "Samples of blocks, q, qd, qdd, tau, (N, n) each. carried: a known body of each block, "
            "by\n"
            "the arguments of set_payload(), or None; times: (N,) s of each block, for\n"
@@ -254,15 +254,13 @@ void bindIdentification(py::module_& module) {
              const std::optional<ArmFit>& start) {
             return f.fit(held.data, options, start ? &*start : nullptr);
           },
-          py::call_guard<py::gil_scoped_release>(), py::arg("data"), py::arg("options"),
-          py::arg("start") = py::none(),
+          py::call_guard<py::gil_scoped_release>(), "data"_a, "options"_a, "start"_a = py::none(),
           "A fit to the samples of all blocks. start: another one to begin with.")
-      .def("torques", &torques, py::arg("fit"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
+      .def("torques", &torques, "fit"_a, "q"_a, "qd"_a, "qdd"_a,
            "Torques of a fit, friction included: (n,) or (N, n).")
-      .def("whitened_information", &whitenedInformation, py::arg("fit"), py::arg("data"),
-           py::arg("law"), py::arg("noise"),
+      .def("whitened_information", &whitenedInformation, "fit"_a, "data"_a, "law"_a, "noise"_a,
            "What samples say of the m unknowns where errors are like this noise, (m, m).")
-      .def("information", &information, py::arg("fit"), py::arg("data"), py::arg("options"),
+      .def("information", &information, "fit"_a, "data"_a, "options"_a,
            "What data and prior say of the m unknowns, (m, m) each, and scores (blocks, m).");
 }
 

@@ -51,6 +51,7 @@ class SharedEstimator {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 using namespace inverse_dynamics_identification;
 using Vector = Eigen::VectorXd;
 
@@ -118,8 +119,8 @@ void bindNoise(py::module_& module) {
         const py::gil_scoped_release release;
         return residualNoise(time, columns, correlation_time);
       },
-      py::arg("time"), py::arg("residuals"), py::kw_only(),
-      py::arg("correlation_time") = ResidualNoise().correlation_time,
+      "time"_a, "residuals"_a, py::kw_only(),
+      "correlation_time"_a = ResidualNoise().correlation_time,
       "Noise of measured minus computed torques (N, n) [N m], at times (N,) [s].");
 }
 
@@ -169,12 +170,12 @@ void bindArm(py::module_& module) {
   py::class_<ArmUncertainty>(
       module, "ArmUncertainty",
       "What the identified model of an arm may be wrong by: arm_uncertainty.hpp.")
-      .def(py::init(&makeUncertainty), py::arg("friction"), py::arg("factor"),
+      .def(py::init(&makeUncertainty), "friction"_a, "factor"_a,
            "friction: smooth_coulomb of each of n joints, by the keys of the model file; "
            "factor: (m, K), the covariance of the m unknowns is factor factor'.")
-      .def("torques", &armTorques, py::arg("solver"), py::arg("z"), py::arg("motion"),
+      .def("torques", &armTorques, "solver"_a, "z"_a, "motion"_a,
            "Of deviations z (K,) at q, qd, qdd, (N, n) each: (N, n) N m.")
-      .def("variances", &armVariances, py::arg("solver"), py::arg("motion"),
+      .def("variances", &armVariances, "solver"_a, "motion"_a,
            "Of the torques at q, qd, qdd, (N, n) each: (N, n) N^2 m^2.");
 }
 
@@ -229,10 +230,10 @@ void bindPayload(py::module_& module) {
                               "Mass, center of mass and inertia of what the tip carries. Threads: "
                               "safe; the GIL is released, and each call waits for those of other "
                               "threads.")
-      .def(ofSolver<SharedEstimator, PayloadOptions>(), py::arg("solver"), py::arg("options"))
-      .def("update", &update, py::arg("time"), py::arg("state"), py::arg("measured"),
+      .def(ofSolver<SharedEstimator, PayloadOptions>(), "solver"_a, "options"_a)
+      .def("update", &update, "time"_a, "state"_a, "measured"_a,
            "Adds a sample: s; q, qd, qdd and torques, (n,) each; PayloadStatus.")
-      .def("run", &run, py::arg("time"), py::arg("motion"), py::arg("measured"),
+      .def("run", &run, "time"_a, "motion"_a, "measured"_a,
            "Adds N samples, as update() does, (N,) and (N, n); how many were added.")
       .def("estimate", &estimate, "(PayloadEstimate, PayloadStatus).")
       .def("restart", &restart, "Forgets all samples.");

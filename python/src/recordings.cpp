@@ -64,6 +64,7 @@ struct Writer {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 using recordings::JointStateRows;
 using recordings::Recording;
 using recordings::SampleTable;
@@ -255,7 +256,7 @@ void bindRecording(py::module_& module) {
              const py::gil_scoped_release free;
              return std::make_unique<Recording>(path.bytes);
            }),
-           py::arg("path"))
+           "path"_a)
       .def_property_readonly("storage",
                              [](const Recording& recording) -> StorageName {
                                return py::str(recordings::name(recording.storage()));
@@ -273,7 +274,7 @@ void bindRecording(py::module_& module) {
           [](const Recording& recording, const std::string& type, const PathText& topic) {
             return textOf(recording.topicOfType(type, topic.bytes));
           },
-          py::arg("message_type"), py::arg("topic") = "")
+          "message_type"_a, "topic"_a = "")
       .def(
           "topics_with_joints",
           [](const Recording& recording, const PathText& usual,
@@ -282,20 +283,20 @@ void bindRecording(py::module_& module) {
             options.joints = joints;
             return textOf(recording.topicsWithJoints(usual.bytes, options));
           },
-          py::arg("usual"), py::arg("joints"),
+          "usual"_a, "joints"_a,
           "The usual topic of joint states, or those that have all joints where it hasn't.")
       .def(
           "expected_messages",
           [](const Recording& recording, const PathText& topic) {
             return recording.expectedMessages(topic.bytes);
           },
-          py::arg("topic"))
+          "topic"_a)
       .def(
           "messages",
           [](const Recording& recording, const PathText& topic) {
             return Messages{recording.messages(topic.bytes)};
           },
-          py::arg("topic"))
+          "topic"_a)
       .def("all_messages",
            [](const Recording& recording) { return Messages{recording.allMessages()}; })
       .def(
@@ -303,9 +304,8 @@ void bindRecording(py::module_& module) {
           [](const Recording& recording, const PathText& topic) {
             return JointStates{recording.jointStates(topic.bytes)};
           },
-          py::arg("topic") = "")
-      .def("read_samples", &readSamples, py::arg("topic"), py::arg("joints"), py::arg("clock"),
-           py::arg("progress"),
+          "topic"_a = "")
+      .def("read_samples", &readSamples, "topic"_a, "joints"_a, "clock"_a, "progress"_a,
            "Joint states as a table. progress: called with the share that is read.");
 }
 
@@ -342,14 +342,14 @@ void bindRecordings(py::module_& module) {
                        const std::vector<Writer::Topic>& topics) {
              return std::make_unique<Writer>(path.bytes, storageOf(storage), topics);
            }),
-           py::arg("path"), py::arg("storage"), py::arg("topics"))
-      .def("write", &write, py::arg("rows"))
+           "path"_a, "storage"_a, "topics"_a)
+      .def("write", &write, "rows"_a)
       .def(
           "finish", [](Writer& writer) { writer.writer.finish(); },
           py::call_guard<py::gil_scoped_release>());
   module.def(
-      "write_torques", &writeTorques, py::arg("path"), py::arg("storage"), py::arg("topic"),
-      py::arg("computed"), py::arg("measured"), py::kw_only(), py::arg("progress"),
+      "write_torques", &writeTorques, "path"_a, "storage"_a, "topic"_a, "computed"_a, "measured"_a,
+      py::kw_only(), "progress"_a,
       "A new recording of computed torques, and of measured ones with _gt behind the topic's\n"
       "name.\n\n"
       "topic: name, joint names, frame. computed: header and receive stamps, (N,); positions,\n"

@@ -22,6 +22,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 using chain_dynamics::RobotDescription;
 using Transform = chain_dynamics::Transform<double>;
 
@@ -189,7 +190,7 @@ void bindRobotDescription(py::module_& module) {
           "axis.");
   py::class_<RobotDescription>(module, "RobotDescription",
                                "The links and joints of a URDF, in the order of its text.")
-      .def(py::init(&descriptionOf), py::arg("urdf"), "urdf: its text. Raises RobotError.")
+      .def(py::init(&descriptionOf), "urdf"_a, "urdf: its text. Raises RobotError.")
       .def_readonly("name", &RobotDescription::name)
       .def_property_readonly(
           "root", [](const RobotDescription& robot) { return robot.links[robot.root].name; })
@@ -203,7 +204,7 @@ void bindRobotDescription(py::module_& module) {
                                return joints;
                              })
       .def(
-          "chain", &chainOf, py::arg("joints"), py::arg("root") = "",
+          "chain", &chainOf, "joints"_a, "root"_a = "",
           "The joints of these names, each placed in the child of the one before, the first in the "
           "link `root`.\n\nJoints between two of them stand at zero. Raises RobotError.")
       .def(
@@ -211,7 +212,7 @@ void bindRobotDescription(py::module_& module) {
           [](const RobotDescription& robot, const std::string& joint) {
             return farthestFixedTo(robot, robot.joints[jointOf(robot, joint)].child);
           },
-          py::arg("joint"), "The link farthest behind a joint, by fixed joints.");
+          "joint"_a, "The link farthest behind a joint, by fixed joints.");
 }
 
 }  // namespace inverse_dynamics_tools

@@ -20,6 +20,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 namespace evaluation = inverse_dynamics_evaluation;
 using Robot = evaluation::RunConfiguration;
 
@@ -135,7 +136,7 @@ True)");
       [](const PathText& name_or_file) {
         return evaluation::readRunConfiguration(name_or_file.bytes);
       },
-      py::arg("name_or_file"),
+      "name_or_file"_a,
       R"(Run configuration by name or from a file.
 
 Parameters
@@ -156,38 +157,37 @@ Examples
 ('shoulder_pan_joint', 'shoulder_lift_joint'))");
   module.def(
       "robot_of_description",
-      [](const PathText& urdf) { return evaluation::robotOfDescription(urdf.bytes); },
-      py::arg("urdf"),
+      [](const PathText& urdf) { return evaluation::robotOfDescription(urdf.bytes); }, "urdf"_a,
       "A robot of which only the description is known: rigid bodies without friction.\n\n"
       "Its name is the file's; what recorded efforts mean is found from the data.");
   module.def(
-      "with_changes", &withChanges, py::arg("robot"),
+      "with_changes", &withChanges, "robot"_a,
       "The run configuration with all fields replaced for which something is given, not None.\n\n"
       "A description that is given stands instead of a model file too, a method of accelerations\n"
       "without the cut-off of the configuration's own; parameters are given one by one.");
-  module.def("recorded_names", &evaluation::recordedNames, py::arg("robot"), py::arg("joint_names"),
+  module.def("recorded_names", &evaluation::recordedNames, "robot"_a, "joint_names"_a,
              "Names in a recording of the solver's joints, in the order of the chain.");
-  module.def("effort_options", &effortOptions, py::arg("robot"), py::arg("solver"),
-             py::arg("option") = py::none(), py::arg("format") = "",
+  module.def("effort_options", &effortOptions, "robot"_a, "solver"_a, "option"_a = py::none(),
+             "format"_a = "",
              "What is stated of efforts: by a Robot, the user, the recording's format.");
   module.def(
       "solver_parameters",
       [](const chain_dynamics::LocatedMap& mapping) {
         return dictOf(evaluation::readSolverParameters(mapping));
       },
-      py::arg("mapping"), "Parameters of a solver as YAML has them; dotted name to value.");
+      "mapping"_a, "Parameters of a solver as YAML has them; dotted name to value.");
   module.def(
       "package_share",
       [](const std::string& package) -> FilePath {
         return pathOf(evaluation::packageShare(package));
       },
-      py::arg("package"), "Directory `share/PACKAGE` of an installed package.");
+      "package"_a, "Directory `share/PACKAGE` of an installed package.");
   module.def(
       "resolved_path",
       [](const std::string& path, const PathText& directory) -> FilePath {
         return pathOf(evaluation::resolvedPath(path, directory.bytes));
       },
-      py::arg("path"), py::arg("directory"),
+      "path"_a, "directory"_a,
       "File that a path in a configuration names; relative ones begin in the directory.");
 }
 

@@ -41,6 +41,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 namespace ids = inverse_dynamics_solver;
 using Robot = inverse_dynamics_evaluation::RunConfiguration;
 using SolverName = std::variant<Robot, PathText>;
@@ -308,33 +309,31 @@ void bindQuantities(py::class_<Solver>& solver) {
 /// Methods with further arguments.
 void bindCalls(py::class_<Solver>& solver) {
   const py::kw_only keywords;
-  const py::arg_v frame = py::arg("frame") = "root", out = py::arg("out") = py::none();
+  const py::arg_v frame = "frame"_a = "root", out = "out"_a = py::none();
   const auto doc = [](const ResultText& text, const std::vector<std::string>& arguments) {
     return documented(text, arguments, Solver::kExample);
   };
   solver
-      .def("torques", &torques, py::arg("q"), py::arg("qd"), py::arg("qdd"), keywords,
-           py::arg("wrench") = py::none(), frame, out,
+      .def("torques", &torques, "q"_a, "qd"_a, "qdd"_a, keywords, "wrench"_a = py::none(), frame,
+           out,
            doc({"Joint torques tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q); with a wrench\n"
                 "+ J(q)^T wrench, as in external_torques().",
                 "(n,) or (N, n)", "arm.torques(q, qd, qdd).shape\n(100, 6)"},
                {"q", "qd", "qdd", "wrench", "frame", "out"})
                .c_str())
-      .def("external_torques", &externalTorques, py::arg("q"), py::arg("wrench"), frame, keywords,
-           out,
+      .def("external_torques", &externalTorques, "q"_a, "wrench"_a, frame, keywords, out,
            doc({"J(q)^T wrench: what the joints add so that the tip exerts the wrench on its\n"
                 "surroundings.",
                 "(n,) or (N, n)", "arm.external_torques(q, [0, 0, -20, 0, 0, 0]).shape\n(100, 6)"},
                {"q", "wrench", "frame", "out"})
                .c_str())
-      .def("friction_vector", &frictionVector, py::arg("qd"), keywords, py::arg("q") = py::none(),
-           out,
+      .def("friction_vector", &frictionVector, "qd"_a, keywords, "q"_a = py::none(), out,
            doc({"Friction torques f(q, qd); zero if the solver has no friction model or was made\n"
                 "without. q is needed where friction_depends_on_position.",
                 "(n,) or (N, n)", "bool(arm.friction_vector(qd).any())\nFalse"},
                {"qd", "q", "out"})
                .c_str())
-      .def("dynamic_components", &dynamicComponents, py::arg("q"), py::arg("qd"), keywords, out,
+      .def("dynamic_components", &dynamicComponents, "q"_a, "qd"_a, keywords, out,
            doc({"H(q), C(q, qd) qd and g(q), faster than by three calls; out: a tuple of three.",
                 "(n, n), (n,), (n,), or (N, n, n), (N, n), (N, n)",
                 "H, c, g = arm.dynamic_components(q, qd)\n"
@@ -463,9 +462,8 @@ void setBaseAcceleration(const Solver& solver, const ArrayLike& acceleration) {
 void bindChanges(py::class_<Solver>& solver) {
   solver
       .def(
-          "set_payload", &setPayload, py::arg("name"), py::arg("mass"),
-          py::arg("center_of_mass") = py::none(), py::arg("inertia") = py::none(),
-          py::arg("frame") = py::none(),
+          "set_payload", &setPayload, "name"_a, "mass"_a, "center_of_mass"_a = py::none(),
+          "inertia"_a = py::none(), "frame"_a = py::none(),
           R"(Adds a rigid body to the tip, or replaces the one of that name, also while other threads compute.
 
 Parameters
@@ -498,7 +496,7 @@ Examples
             auto& payload = s.as<ids::Payload>("remove_payload");
             return unlocked([&] { return payload.removePayload(name); });
           },
-          py::arg("name"), "Takes a body away; False if there is none of that name.")
+          "name"_a, "Takes a body away; False if there is none of that name.")
       .def(
           "clear_payloads",
           [](const Solver& s) {
@@ -508,10 +506,10 @@ Examples
           "Takes all bodies away.")
       .def_property_readonly("payloads", &payloads,
                              "The bodies: name to the arguments of set_payload().")
-      .def("set_gravity", &setGravity, py::arg("gravity"),
+      .def("set_gravity", &setGravity, "gravity"_a,
            "Sets the gravitational acceleration: (3,) m/s^2, in the axes of the root link.\n"
            "A UserWarning where it is implausible: 981, for one.")
-      .def("set_base_acceleration", &setBaseAcceleration, py::arg("acceleration"),
+      .def("set_base_acceleration", &setBaseAcceleration, "acceleration"_a,
            "How the root link accelerates, (3,) m/s^2 in its axes. Not for a base that rotates.")
       .def_property_readonly("gravity", &gravity, "(3,) m/s^2.")
       .def_property_readonly("base_acceleration", &baseAcceleration, "(3,) m/s^2.");
@@ -677,10 +675,9 @@ Examples
 >>> arm.torques([0.5] * 6, [0] * 6, [0] * 6).shape
 (6,))");
   solver
-      .def(py::init(&makeSolver), py::arg("plugin") = "", py::arg("urdf") = "",
-           py::arg("root") = "", py::arg("tip") = "", py::arg("gravity") = py::none(),
-           py::kw_only(), py::arg("friction") = py::none(), py::arg("attached") = "",
-           py::arg("model") = py::none(), py::arg("parameters") = py::dict())
+      .def(py::init(&makeSolver), "plugin"_a = "", "urdf"_a = "", "root"_a = "", "tip"_a = "",
+           "gravity"_a = py::none(), py::kw_only(), "friction"_a = py::none(), "attached"_a = "",
+           "model"_a = py::none(), "parameters"_a = py::dict())
       .def("__repr__", &represented)
       .def(py::pickle(&stateOf, &restored));
   bindProperties(solver);

@@ -18,6 +18,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 using namespace inverse_dynamics_timing;
 using Stops = std::vector<Eigen::Index>;
 
@@ -43,14 +44,14 @@ void bindPath(py::module_& module) {
           [](const Array& waypoints, const Stops& stops) {
             return Path::spline(states(waypoints, "waypoints"), stops);
           },
-          py::arg("waypoints"), py::arg("stops") = Stops(),
+          "waypoints"_a, "stops"_a = Stops(),
           "Cubic spline through waypoints (m, n); stops: numbers of those to stand still at.")
       .def_static(
           "lines",
           [](const Array& waypoints, double deviation, const Stops& stops) {
             return Path::lines(states(waypoints, "waypoints"), deviation, stops);
           },
-          py::arg("waypoints"), py::arg("deviation"), py::arg("stops") = Stops(),
+          "waypoints"_a, "deviation"_a, "stops"_a = Stops(),
           "Straight lines; curves pass corners by at most `deviation` rad, with 0 the robot stops.")
       .def_property_readonly("joint_count", &Path::jointCount)
       .def_property_readonly(
@@ -66,7 +67,7 @@ void bindPath(py::module_& module) {
               path.evaluate(at, q, dq, ddq);
             });
           },
-          py::arg("s"), "q, dq/ds, d2q/ds2 at s (N,): (N, n) each.");
+          "s"_a, "q, dq/ds, d2q/ds2 at s (N,): (N, n) each.");
 }
 
 Trajectory retimed(const SolverObject& solver, const Path& path, const MotionLimits& limits,
@@ -118,15 +119,15 @@ void bindTiming(py::module_& module) {
               t.evaluate(at, q, qd, qdd);
             });
           },
-          py::arg("time"), "q, qd, qdd at times (N,) s: (N, n) each.");
-  module.def("retime_path", &retimed, py::arg("solver"), py::arg("path"), py::arg("limits"),
-             py::arg("options") = O(), "The fastest motion along a path within limits: TimedPath.");
+          "time"_a, "q, qd, qdd at times (N,) s: (N, n) each.");
+  module.def("retime_path", &retimed, "solver"_a, "path"_a, "limits"_a, "options"_a = O(),
+             "The fastest motion along a path within limits: TimedPath.");
   module.def(
       "torque_band",
       [](const SolverObject& solver, double margin) {
         return arrayOf(torqueBand(*solverOf(solver), margin));
       },
-      py::arg("solver"), py::arg("margin"),
+      "solver"_a, "margin"_a,
       "(n,) N m, half the width of the band that holds a share of the measured torques; 0: zeros.");
   module.def(
       "speed_limit",
@@ -134,7 +135,7 @@ void bindTiming(py::module_& module) {
         const auto held = solverOf(solver);
         return arrayOf(unlocked([&] { return speedLimit(*held, trajectory, limits, options); }));
       },
-      py::arg("solver"), py::arg("trajectory"), py::arg("limits"), py::arg("options") = O(),
+      "solver"_a, "trajectory"_a, "limits"_a, "options"_a = O(),
       "(K,) the greatest ds/dt for which limits can be kept for an instant, at a grid's points.");
 }
 

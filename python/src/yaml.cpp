@@ -13,6 +13,7 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
+using namespace py::literals;
 using chain_dynamics::LocatedMap;
 using chain_dynamics::LocatedValue;
 
@@ -36,20 +37,18 @@ void bindYaml(py::module_& module) {
           [](const LocatedValue& value, const std::string& expected, const std::string& remedy) {
             value.fail(expected, remedy);
           },
-          py::arg("expected"), py::arg("remedy") = "",
-          "Raise the error that says what was expected here.")
+          "expected"_a, "remedy"_a = "", "Raise the error that says what was expected here.")
       .def("scalar", &LocatedValue::scalar, "A text, a finite number, an integer, true or false.")
-      .def("text", &LocatedValue::text, py::arg("one_of") = std::vector<std::string>(),
+      .def("text", &LocatedValue::text, "one_of"_a = std::vector<std::string>(),
            "A text; one of these, if any are given.")
       .def("number", &LocatedValue::number, "A finite number.")
       .def("integer", &LocatedValue::integer, "An integer of 64 bits.")
       .def("truth", &LocatedValue::truth, "True or false.")
-      .def("entries", &LocatedValue::entries, py::arg("length") = py::none(),
+      .def("entries", &LocatedValue::entries, "length"_a = py::none(),
            "A list; of this length, if one is given.")
       .def("mapping", &LocatedValue::map, "Keys with values.");
-  map.def("required", &LocatedMap::required, py::arg("key"),
-          "The value of a key that must be there.")
-      .def("optional", &LocatedMap::optional, py::arg("key"),
+  map.def("required", &LocatedMap::required, "key"_a, "The value of a key that must be there.")
+      .def("optional", &LocatedMap::optional, "key"_a,
            "The value of a key, or None if it is absent or null.")
       .def("reject_others", &LocatedMap::rejectOthers,
            "Raise the error for a key that hasn't been read.");
@@ -58,14 +57,14 @@ void bindYaml(py::module_& module) {
       [](const PathText& path, const py::type& error) {
         return LocatedValue::ofFile(path.bytes, raising(error));
       },
-      py::arg("path"), py::arg("error"),
+      "path"_a, "error"_a,
       "The value that a YAML file is. error: what is raised, now and by the value.");
   module.def(
       "parse_yaml",
       [](const py::bytes& text, const std::string& file, const py::type& error) {
         return LocatedValue::ofText(text, file, raising(error));
       },
-      py::arg("text"), py::arg("file"), py::arg("error"), "The value that a text of YAML is.");
+      "text"_a, "file"_a, "error"_a, "The value that a text of YAML is.");
 }
 
 }  // namespace inverse_dynamics_tools
