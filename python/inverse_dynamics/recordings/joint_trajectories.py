@@ -145,6 +145,21 @@ def _deserialized(raw: bytes) -> Any:
     return message
 
 
+def of_one_motion(trajectories: Sequence[JointTrajectory], remedy: str) -> list[JointTrajectory]:
+    """Those with points. Raises BagError unless one has all points, or each has one."""
+    where = trajectories[0].where.rpartition(",")[0]
+    filled = [trajectory for trajectory in trajectories if len(trajectory)]
+    if not filled:
+        raise BagError(f"{where}: expected points, got none in any message; record it again")
+    most = max(map(len, filled))
+    if len(filled) > 1 and most > 1:
+        raise BagError(
+            f"{where}: expected one trajectory, or messages of one point each, got {len(filled)} "
+            f"messages with up to {most} points: it isn't known which of them belong together; {remedy}"
+        )
+    return filled
+
+
 def joint_log_of(
     trajectories: Sequence[JointTrajectory],
     joints: Sequence[str],
@@ -153,20 +168,11 @@ def joint_log_of(
     storage: Storage,
 ) -> JointLog:
     """The points as samples, with accelerations if they have any. Raises BagError."""
-    where = trajectories[0].where.rpartition(",")[0]
     notes = []
-    filled = [trajectory for trajectory in trajectories if len(trajectory)]
+    filled = of_one_motion(trajectories, "`ids torques` takes any number of trajectories")
     if len(filled) < len(trajectories):
         notes.append(
             f"{len(trajectories) - len(filled)} of {len(trajectories)} messages left out: no points"
-        )
-    if not filled:
-        raise BagError(f"{where}: expected points, got none in any message; record it again")
-    if len(filled) > 1 and max(map(len, filled)) > 1:
-        raise BagError(
-            f"{where}: expected one trajectory, or messages of one point each, got {len(filled)} "
-            f"messages with up to {max(map(len, filled))} points: it isn't known which of them "
-            "belong together; `ids torques` takes any number of trajectories"
         )
     joints = tuple(joints) or filled[0].joint_names
 

@@ -27,7 +27,7 @@ from inverse_dynamics.arguments import checked
 from inverse_dynamics.errors import BagError, UserError
 from inverse_dynamics.evaluation.motion_energy import MotionEnergy
 from inverse_dynamics.recordings.csv_table import is_csv
-from inverse_dynamics.recordings.joint_trajectories import read_joint_trajectories
+from inverse_dynamics.recordings.joint_trajectories import of_one_motion, read_joint_trajectories
 from inverse_dynamics.recordings.log_format import LogFormat
 from inverse_dynamics.recordings.table_logs import read_motion
 from inverse_dynamics.recordings.tables import open_table
@@ -346,13 +346,7 @@ def _waypoints_of_file(path: Path, arm: Arm, topic: str) -> Floats:
                 f"{table.incomplete + len(motion.time)} rows without; complete or remove them"
             )
         return motion.numbers[POSITION]
-    trajectories = [each for each in read_joint_trajectories(path, topic) if len(each)]
-    if len(trajectories) > 1 and max(map(len, trajectories)) > 1:
-        raise BagError(
-            f"{trajectories[0].where.rpartition(',')[0]}: expected one trajectory, or messages of one point "
-            f"each, got {len(trajectories)} messages with {', '.join(f'{len(t)}' for t in trajectories[:9])} "
-            "points: it isn't known which of them are the path; record one alone"
-        )
+    trajectories = of_one_motion(read_joint_trajectories(path, topic), "record the path alone")
     return np.concatenate([t.numbers("positions", arm.recorded_names) for t in trajectories])
 
 

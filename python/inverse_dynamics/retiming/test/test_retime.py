@@ -465,7 +465,7 @@ def test_several_trajectories_are_not_joined_to_one_path(turner, tmp_path):
     messages = [trajectory(["turn"], points)] * 2
     write_trajectories(tmp_path / "two", messages)
     with pytest.raises(
-        UserError, match="expected one trajectory, .* got 2 messages with 2, 2 points"
+        UserError, match="expected one trajectory, .* got 2 messages with up to 2 points"
     ):
         retime(tmp_path / "two", turner)
 
