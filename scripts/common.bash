@@ -20,7 +20,6 @@ case "${1:-}" in -h | --help) usage && exit ;; esac
 mkdir -p out && touch out/COLCON_IGNORE
 
 venv=$workspace/.venv
-requirements=python/requirements.txt
 
 # Debian's ament, colcon and pluginlib belong to Debian's own python3, whatever `python3` is first on PATH.
 system_python=/usr/bin/python3
@@ -90,6 +89,23 @@ enter_venv() {
   if [ -z "${ROS_DISTRO:-}" ]; then
     unset AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH PYTHONPATH
   fi
+}
+
+# install_python DIRECTORY LIST PIP_ARGUMENT...
+#
+# Installs Python packages into a virtual environment, and makes that if there is none. Does nothing if the file LIST,
+# which names the packages, and Python are those of the last time.
+install_python() {
+  [ -d "$1" ] || "$system_python" -m venv "$1"
+  local stamp=$1/requirements.sha256 wanted
+  wanted=$({ "$1/bin/python" --version; cat "$2"; } | sha256sum)
+  if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ]; then
+    say "Python packages: those of $2 are installed"
+    return
+  fi
+  say "Python packages: installing those of $2 into ${1#"$workspace"/} with pip"
+  "$1/bin/python" -m pip install --quiet --disable-pip-version-check "${@:3}"
+  echo "$wanted" >"$stamp"
 }
 
 # Recordings of real robots are not part of the repository: IDS_DATA_DIR names them, or is unset.
