@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes pictures of README.md and docs/. Called by ./scripts/pictures."""
+"""Makes pictures of README.md and docs/ again.
+
+./scripts/study pictures report|why
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image
     from selenium.webdriver import Chrome
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "docs/pictures"
 
 FLAGS = (
