@@ -11,18 +11,22 @@ endfunction()
 
 # inverse_dynamics_solver_add_plugin([DEPENDENCIES <package>...])
 #
-# Makes the solver library ${PROJECT_NAME} a plugin, and installs and exports it with the headers below include/. The
-# registration, src/plugin.cpp, becomes a library of its own, ${PROJECT_NAME}_plugin, that only pluginlib opens;
-# ${PROJECT_NAME}.xml describes it. DEPENDENCIES: packages that users of the headers need, inverse_dynamics_solver by
-# default. A macro, since ament keeps what a package exports in the variables of its CMakeLists.txt.
+# Makes the solver library ${PROJECT_NAME} a plugin, and installs and exports it with the headers below include/. If there
+# is no such target, it is made of src/*.cpp, and offers the namespace of its name. The registration, src/plugin.cpp,
+# becomes a library of its own, ${PROJECT_NAME}_plugin, that only pluginlib opens; ${PROJECT_NAME}.xml describes it.
+# DEPENDENCIES: packages that users of the headers need, inverse_dynamics_solver by default. A macro, since ament keeps
+# what a package exports in the variables of its CMakeLists.txt.
 macro(inverse_dynamics_solver_add_plugin)
   cmake_parse_arguments(_solver "" "" "DEPENDENCIES" ${ARGN})
   if(NOT _solver_DEPENDENCIES)
     set(_solver_DEPENDENCIES inverse_dynamics_solver)
   endif()
-  target_include_directories(${PROJECT_NAME} PUBLIC
-    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
-    $<INSTALL_INTERFACE:include/${PROJECT_NAME}>)
+  if(TARGET ${PROJECT_NAME})
+    chain_dynamics_export_library(${_solver_DEPENDENCIES})
+  else()
+    chain_dynamics_add_library(${_solver_DEPENDENCIES})
+  endif()
+  list(APPEND ${PROJECT_NAME}_CONFIG_EXTRAS ${chain_dynamics_extras}/ament_headers-extras.cmake)
 
   if(NOT TARGET pluginlib::pluginlib)
     find_package(pluginlib REQUIRED)
@@ -34,18 +38,10 @@ macro(inverse_dynamics_solver_add_plugin)
   set_target_properties(${PROJECT_NAME}_plugin PROPERTIES
     INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>")
   pluginlib_export_plugin_description_file(inverse_dynamics_solver ${PROJECT_NAME}.xml)
-
-  install(DIRECTORY include/ DESTINATION include/${PROJECT_NAME})
-  install(TARGETS ${PROJECT_NAME} EXPORT export_${PROJECT_NAME}
-    ARCHIVE DESTINATION lib LIBRARY DESTINATION lib RUNTIME DESTINATION bin)
   install(TARGETS ${PROJECT_NAME}_plugin LIBRARY DESTINATION lib RUNTIME DESTINATION bin)
-  list(INSERT ${PROJECT_NAME}_CONFIG_EXTRAS 0 ${chain_dynamics_DIR}/ament_python-extras.cmake
-    ${chain_dynamics_DIR}/ament_headers-extras.cmake)
   if(IS_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/launch)
     install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})
   endif()
-  ament_export_targets(export_${PROJECT_NAME} HAS_LIBRARY_TARGET)
-  ament_export_dependencies(${_solver_DEPENDENCIES})
 endmacro()
 
 # inverse_dynamics_solver_link_conformance_tests(<test>)
@@ -111,6 +107,18 @@ function(inverse_dynamics_solver_add_plugin_test test)
   target_link_libraries(${test} inverse_dynamics_solver::inverse_dynamics_solver)
   add_dependencies(${test} ${ARG_PLUGIN})
 endfunction()
+
+# inverse_dynamics_solver_add_solver_test([<further source>...])
+#
+# The program ${PROJECT_NAME}_test of the conformance tests and the solver's own, which load the plugin.
+macro(inverse_dynamics_solver_add_solver_test)
+  find_package(ament_cmake_gtest REQUIRED)
+  find_package(yaml-cpp REQUIRED)
+  inverse_dynamics_solver_add_plugin_test(${PROJECT_NAME}_test
+    test/conformance_test.cpp test/${PROJECT_NAME}_test.cpp ${ARGN} PLUGIN ${PROJECT_NAME}_plugin)
+  target_link_libraries(${PROJECT_NAME}_test ${PROJECT_NAME} ${chain_dynamics_yaml_cpp})
+  inverse_dynamics_solver_link_conformance_tests(${PROJECT_NAME}_test)
+endmacro()
 
 # Builds a test program with RealtimeSanitizer where the compiler has it: Clang from version 20 on.
 function(inverse_dynamics_solver_watch_real_time target)
