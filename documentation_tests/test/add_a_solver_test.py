@@ -36,9 +36,3 @@ def test_the_example_is_renamed_by_the_commands_of_the_page(tmp_path: Path) -> N
     for file in package.rglob("*"):
         assert "pendulum" not in file.name
         assert file.is_dir() or "pendulum" not in file.read_text(encoding="utf-8").lower()
-
-
-def test_the_wheel_of_the_page_on_python_is_the_examples() -> None:
-    (block,) = blocks_of(page("docs/python.md"), "toml")
-    assert block.file == "pyproject.toml"
-    assert block.code in (EXAMPLE / block.file).read_text(encoding="utf-8")
