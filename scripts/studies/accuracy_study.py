@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures the choice of the cut-off on synthetic recordings, and writes the table of docs/accuracy.md.
 
-    ./scripts/study accuracy            # a few minutes; prints the table
-    ./scripts/study accuracy --write    # replaces it in docs/accuracy.md
-
 A recording is a motion with known accelerations and the noise of one kind of velocity; every second one has an event.
 The error of the default accelerations, over all samples, is divided by the least error that the same filter has with
 a given cut-off. No constant was chosen by these recordings, but one bound: motion has no more power than the velocity.

@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which causes `ids evaluate` names for recordings whose mistakes are known (known_mistakes.py).
 
-    ./scripts/study causes                       # prints what is wrong, and the table
-    ./scripts/study causes --seed 7 --keep DIR   # another set, left in DIR
-    ./scripts/study causes --write               # replaces the table in docs/why_dont_my_torques_match.md
-
 Right: each mistake is named, with its joints, alone or together with a rival that the recording can't tell
 from it. Missed: nothing or friction alone is named, or one mistake of two. Wrong: any other cause, without the right
 one. Undecided: nothing is named where two mistakes were made, which is as good as both.

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What few false alarms cost in sensitivity: prints the table of docs/contact.md.
-
-./scripts/study contact
-"""
+"""What few false alarms cost in sensitivity: prints the table of docs/contact.md."""
 
 from __future__ import annotations
 
@@ -10,12 +7,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from studies import ROBOTS, table
+from studies import ROBOTS, identified, recording_of, table
 
 from inverse_dynamics.contacts.contacts import find_contacts
 from inverse_dynamics.identification.files import write_identification
-from inverse_dynamics.identification.identify import identify
-from inverse_dynamics.public_recordings.public_recordings import data_directory
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import load_robot
 
@@ -39,17 +34,11 @@ def least_forces(robot: Path, recording: Path, rate: float) -> str:
     return f"{np.median(least):.0f}, {np.quantile(least, 0.9):.0f}"
 
 
-def main() -> None:
-    """Print the table."""
-    rows = []
-    for name, folder in ROBOTS.items():
-        recording = data_directory() / "bags" / folder
-        with TemporaryDirectory() as directory:
-            identified = identify([recording], name)
-            robot = write_identification(identified, Path(directory) / "arm.yaml").robot
-            rows.append((name, *(least_forces(robot, recording, rate) for rate in RATES)))
-    print(table(("false alarms per hour", *(f"{rate:g}" for rate in RATES)), rows))
-
-
 if __name__ == "__main__":
-    main()
+    rows = []
+    for name in ROBOTS:
+        with TemporaryDirectory() as directory:
+            robot = write_identification(identified(name), Path(directory) / "arm.yaml").robot
+            forces = [least_forces(robot, recording_of(name), rate) for rate in RATES]
+        rows.append((name, *forces))
+    print(table(("false alarms per hour", *(f"{rate:g}" for rate in RATES)), rows))

@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How far exported models of hidden arms run free in MuJoCo, beside what MuJoCo's own sysid fits to the same data.
 
-    .venv/bin/pip install "mujoco[sysid]"
-    ./scripts/study export            # 20 arms, two hours of CPU; prints the table of docs/identification.md
-    ./scripts/study export --arms 3
-
 A hidden arm is the identified UR10 with other links and another friction law. Both start from the description alone:
 `ids identify` as it is, and sysid with masses, centers of mass, rotor inertias, damping and friction loss.
 """
@@ -23,12 +19,11 @@ import mujoco
 import numpy as np
 from known_truth import ENCODER, Truth
 from mujoco import sysid
-from studies import DOCS, ROBOTS, show, table
+from studies import DOCS, identified, recording_of, show, table
 
 from inverse_dynamics import identify, load_robot
 from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.urdf_export import mjcf_text
-from inverse_dynamics.public_recordings.public_recordings import data_directory
 from inverse_dynamics.simulation import Sensors, simulate, write_run
 
 if TYPE_CHECKING:
@@ -206,23 +201,17 @@ def _range(values: Floats) -> str:
     return f"{middle} ({low} to {high})"
 
 
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--arms", type=int, default=20)
     options.add_argument("--write", action="store_true", help="into the page")
     arms = options.parse_args().arms
-    recording = data_directory() / "bags" / ROBOTS["ur10_real"]
-    found = identify([recording], "ur10_real")
+    found = identified("ur10_real")
     results = []
-    with TemporaryDirectory() as folder:
-        other_motion = Truth.of(recording, "ur10", Path(folder), found).motion
+    with TemporaryDirectory() as directory:
+        folder = Path(directory)
+        other_motion = Truth.of(recording_of("ur10_real"), "ur10", folder, found).motion
         for seed in range(arms):
-            arm = hidden_arm(found, seed, Path(folder))
-            results.append(compared(arm, other_motion, Path(folder)))
+            results.append(compared(hidden_arm(found, seed, folder), other_motion, folder))
             print(seed, results[-1], file=sys.stderr, flush=True)
     show(text_of(results), "identification.md", "export_study")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,30 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Models of real robots, known robots and payloads: tables of docs/identification_results.md.
 
-    ./scripts/study identification            # prints the tables; ten minutes
-    ./scripts/study identification --write    # replaces them
-
 All is what `ids identify` does by default.
 """
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
 import numpy as np
 from known_truth import MOST_ERROR, Truth
 from payload_truth import STEP, Arm, trials
-from studies import ROBOTS, show, table
+from studies import ROBOTS, identified, recording_of, show, table
 
-from inverse_dynamics import identify
 from inverse_dynamics.identification.tables import held_out_table
-from inverse_dynamics.public_recordings.public_recordings import data_directory
-
-if TYPE_CHECKING:
-    from inverse_dynamics.identification.result import Identification
 
 SEEDS = 10
 TRIALS = 100
@@ -54,18 +44,10 @@ arm's model isn't fitted to, one every {STEP:g} s. *Nested*: law, prior strength
 window, too. *Uncertain arm*: the arm's errors are estimated. Medians.
 """
 
-identified = cache(lambda name: identify([recording_of(name)], name))
-
-
-def recording_of(name: str) -> Path:
-    """That of a real robot."""
-    return data_directory() / "bags" / ROBOTS[name]
-
 
 def real_robot(name: str) -> str:
     """The section of a robot."""
-    found: Identification = identified(name)
-    errors = held_out_table(found)
+    errors = held_out_table(identified(name))
     headings = ("joint", *errors.headings[2:-1], "in 95 % band")
     rows = [
         (joint, *(f"{value:.3g}" for value in rmse), f"{percent:.1f} %")
@@ -131,13 +113,8 @@ def _cells(label: str, arm: Arm, mass: float) -> tuple[str, ...]:
     )
 
 
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     with TemporaryDirectory() as folder:
         directory = Path(folder)
         sections = [*map(real_robot, ROBOTS), known_robots(directory), payloads(directory)]
     show("\n".join(sections).rstrip(), "identification_results.md", "identification_study")
-
-
-if __name__ == "__main__":
-    main()

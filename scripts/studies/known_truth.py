@@ -20,29 +20,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics import _core, evaluate, load_robot
+from inverse_dynamics import evaluate, identify, load_robot
 from inverse_dynamics.identification.blocks import blocks_of
-from inverse_dynamics.identification.cross_validation import choose, errors_of
 from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.identify import BLOCKS
-from inverse_dynamics.identification.knowledge import (
-    _combinations,
-    independent_samples,
-    intervals,
-    knowledge,
-)
-from inverse_dynamics.identification.result import identified_model, urdf_of
-from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.identification.knowledge import _combinations
+from inverse_dynamics.identification.result import identified_model
+from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.simulation import EffortNoise, Resolution, Sensors, simulate, write_run
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.evaluation.evaluation import Evaluation
-    from inverse_dynamics.identification.blocks import Block
-    from inverse_dynamics.identification.cross_validation import Chosen
     from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.robots.robots import Robot
 
@@ -124,45 +114,23 @@ class Truth:
         return bag
 
     def identified_again(self, seed: int) -> Result:
-        """As `ids identify` makes the model of all data."""
-        robot = replace(self.found.robot, effort="torque")
-        bag = self.record(seed)
-        fitter = _core.ArmFitter.from_urdf(
-            read_description(urdf_of(self.found)),
-            root=robot.root,
-            tip=robot.tip,
-            gravity=robot.gravity,
-        )
-        blocks = blocks_of(evaluate(bag, robot), BLOCKS)
-        chosen = choose(fitter, blocks)
+        """From the description, by what `ids identify` does."""
+        robot = replace(self.found.robot, plugin=RIGID_BODY, model=None, effort="torque")
+        again = identify([self.record(seed)], robot)
         q, qd, qdd = self.states(seed)
-        error = fitter.torques(chosen.fit, q, qd, qdd) - _torques(self.found, q, qd, qdd)
+        error = _torques(again, q, qd, qdd) - _torques(self.found, q, qd, qdd)
+        # Combinations of inertial parameters come first.
+        combinations = _combinations(identified_model(self.found), self.found.joints)
+        true = [c @ self.found.model.parameters.ravel() for c, _, _ in combinations]
         return Result(
             error=np.sqrt((error**2).mean(axis=0)),
-            delay_error=chosen.delay - max(self.found.delay, 0.0),
-            inside=self._inside(fitter, chosen, blocks),
-        )
-
-    def _inside(self, fitter: _core.ArmFitter, chosen: Chosen, blocks: Sequence[Block]) -> Mask:
-        later = [block.later(chosen.delay) for block in blocks]
-        errors = [errors_of(fitter, chosen.fit, block) for block in later]
-        known = knowledge(
-            fitter,
-            chosen.fit,
-            later,
-            law=chosen.law,
-            prior_strength=chosen.prior_strength,
-            worth=float(independent_samples(errors).mean() / sum(map(len, errors))),
-        )
-        engine = identified_model(self.found)
-        truth = self.found.model.parameters.ravel()
-        combinations = [c for c, _, _ in _combinations(engine, fitter.joint_names)]
-        found = intervals(known, engine, self.found.units)[: len(combinations)]
-        return np.array(
-            [
-                abs(interval.value - combination @ truth) <= interval.half_width
-                for interval, combination in zip(found, combinations, strict=True)
-            ]
+            delay_error=again.delay - max(self.found.delay, 0.0),
+            inside=np.array(
+                [
+                    abs(interval.value - value) <= interval.half_width
+                    for interval, value in zip(again.intervals, true, strict=False)
+                ]
+            ),
         )
 
     def states(self, seed: int) -> tuple[Floats, Floats, Floats]:

@@ -1,19 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What studies share: the real robots, tables in Markdown and their place in the pages of docs/."""
+"""What studies share: models of the real robots, tables in Markdown and their place in the pages of docs/."""
 
 from __future__ import annotations
 
 import sys
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inverse_dynamics import identify
+from inverse_dynamics.public_recordings.public_recordings import data_directory
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+    from inverse_dynamics.identification.result import Identification
 
 ROBOTS = {"ur10_real": "ur10_exciting_trajectory", "panda_real": "panda_exciting_trajectory"}
 """Real robots, and their recordings."""
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+def recording_of(name: str) -> Path:
+    """That of one of ROBOTS."""
+    return data_directory() / "bags" / ROBOTS[name]
+
+
+@cache
+def identified(name: str) -> Identification:
+    """One of ROBOTS, by what `ids identify` does."""
+    return identify([recording_of(name)], name)
 
 
 def table(names: Sequence[str], rows: Iterable[Iterable[object]]) -> str:

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Models of other people's robots, tested on another day, motion or robot than they are fitted to.
 
-    ./scripts/study transfer DIRECTORY            # prints the table; five minutes
-    ./scripts/study transfer DIRECTORY --write    # replaces it in docs/identification_results.md
-
-DIRECTORY holds clones of these repositories; what is missing is named, and then nothing is replaced:
+The first argument is a directory of clones of these repositories; what is missing is named, and then nothing is
+replaced:
 
     https://github.com/shamilmamedov/dynamic_calibration
     https://github.com/JonasWeigand/Robot_Identification
@@ -22,11 +20,10 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from studies import show, table
+from studies import recording_of, show, table
 
 from inverse_dynamics import _core, evaluate, identify, load_robot
 from inverse_dynamics.identification.files import write_identification
-from inverse_dynamics.public_recordings.public_recordings import data_directory
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import robot_of_description
 
@@ -141,7 +138,7 @@ def pandas(clone: Path, scratch: Path) -> Arm:
     return Arm(
         name="Panda",
         robot=load_robot("panda_real"),
-        recordings={here: data_directory() / "bags/panda_exciting_trajectory", there: other},
+        recordings={here: recording_of("panda_real"), there: other},
         fits=(((here,), (there,)), ((there,), (here,))),
     )
 
@@ -281,8 +278,7 @@ ARMS = {  # by clone
 }
 
 
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     clones = Path(sys.argv[1])
@@ -296,7 +292,3 @@ def main() -> None:
         print(table(HEADINGS, rows))
         sys.exit(f"{clones}: expected clones of {', '.join(missing)}, too; nothing was replaced")
     show(table(HEADINGS, rows), "identification_results.md", "transfer_study")
-
-
-if __name__ == "__main__":
-    main()
