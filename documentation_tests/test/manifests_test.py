@@ -47,6 +47,8 @@ def found_by_cmake(package: Path) -> set[str]:
     text = "".join(file.read_text(encoding="utf-8") for file in files if file.exists())
     # An interpreter alone is part of every ROS 2.
     names = re.findall(r"find_package\(([\w-]+)(?!.*COMPONENTS Interpreter\))", text)
+    for loop in re.findall(r"foreach\(package ([^)]+)\)\s+find_package", text):
+        names += loop.split()
     return {KEYS.get(name, name) for name in set(names) - WITHOUT_KEY}
 
 
