@@ -43,7 +43,8 @@ def make_report() -> None:
     bag = data_directory() / "bags/ur10_exciting_trajectory"
     with tempfile.TemporaryDirectory() as scratch:
         robot = Path(scratch) / "ur10.yaml"
-        _ids("identify", bag, "--robot", "ur10_real", "--out", robot)
+        command = ["ids", "identify", str(bag), "--robot", "ur10_real", "--out", str(robot)]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         frames = list(_frames(robot.with_suffix(".html"), Path(scratch) / "profile"))
     colours = frames[len(frames) // 2].quantize(96)
     frames = [frame.quantize(palette=colours, dither=Image.Dither.NONE) for frame in frames]
@@ -104,10 +105,6 @@ def make_why() -> None:
     subprocess.run(
         [sys.executable, PICTURES / "make_why_pictures.py", ROOT / "out/why", PICTURES], check=True
     )
-
-
-def _ids(*arguments: str | Path) -> None:
-    subprocess.run(["ids", *arguments], check=True, stdout=subprocess.DEVNULL)
 
 
 if __name__ == "__main__":
