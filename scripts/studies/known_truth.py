@@ -22,12 +22,11 @@ import numpy as np
 
 from inverse_dynamics import _core, evaluate, load_robot
 from inverse_dynamics.identification.blocks import blocks_of
-from inverse_dynamics.identification.cross_validation import choose, errors_of
+from inverse_dynamics.identification.cross_validation import choose
 from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.identify import BLOCKS
 from inverse_dynamics.identification.knowledge import (
     _combinations,
-    independent_samples,
     intervals,
     knowledge,
 )
@@ -145,15 +144,7 @@ class Truth:
 
     def _inside(self, fitter: _core.ArmFitter, chosen: Chosen, blocks: Sequence[Block]) -> Mask:
         later = [block.later(chosen.delay) for block in blocks]
-        errors = [errors_of(fitter, chosen.fit, block) for block in later]
-        known = knowledge(
-            fitter,
-            chosen.fit,
-            later,
-            law=chosen.law,
-            prior_strength=chosen.prior_strength,
-            worth=float(independent_samples(errors).mean() / sum(map(len, errors))),
-        )
+        known = knowledge(fitter, chosen.fit, later, chosen.options)
         engine = identified_model(self.found)
         truth = self.found.model.parameters.ravel()
         combinations = [c for c, _, _ in _combinations(engine, fitter.joint_names)]

@@ -221,7 +221,6 @@ def _half_widths(fitter: ArmFitter, fit: ArmFit, read: Sequence[_Recording]) -> 
             data,
             share * prior,
             scores,
-            worth=1.0,
             assumed=np.zeros((len(data), 0)),
         )
         deviations.append(np.sqrt(np.diag(known.covariance)[at]))
