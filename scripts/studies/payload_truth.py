@@ -20,8 +20,9 @@ import numpy as np
 from inverse_dynamics import Solver, _core, evaluate
 from inverse_dynamics.identification.blocks import FEWEST, block_of
 from inverse_dynamics.identification.cross_validation import choose
+from inverse_dynamics.identification.files import model_file_text
 from inverse_dynamics.identification.knowledge import knowledge
-from inverse_dynamics.identification.result import model_file_text, urdf_of
+from inverse_dynamics.identification.result import urdf_of
 from inverse_dynamics.identification.uncertainty import factor_of
 from inverse_dynamics.payload.payload import Samples, fit_payload, samples_of, with_load
 from inverse_dynamics.robots.descriptions import read_description

@@ -17,12 +17,8 @@ import numpy as np
 from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
 from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.identification.baselines import baseline_torques, baselines, root_mean_squares
-from inverse_dynamics.identification.result import (
-    IdentificationError,
-    model_file_text,
-    urdf_of,
-    valid_samples,
-)
+from inverse_dynamics.identification.files import model_file_text
+from inverse_dynamics.identification.result import IdentificationError, urdf_of, valid_samples
 from inverse_dynamics.identification.uncertainty import uncertainty_text
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.descriptions import read_description

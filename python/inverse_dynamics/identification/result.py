@@ -23,7 +23,6 @@ from inverse_dynamics.errors import EvaluationError, RobotError
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.show.result import ResultFiles
-from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -221,13 +220,13 @@ class Identification(ResultFiles):
 
     def numbers(self) -> dict[str, Any]:
         """Everything but the samples, for JSON."""
-        from inverse_dynamics.identification.files import identification_numbers
+        from inverse_dynamics.identification.tables import identification_numbers
 
         return identification_numbers(self)
 
     def lines(self) -> Iterable[Line]:
         """What the screen shows."""
-        from inverse_dynamics.identification.summary import identification_lines
+        from inverse_dynamics.identification.tables import identification_lines
 
         return identification_lines(self)
 
@@ -273,13 +272,6 @@ class Identification(ResultFiles):
         return np.array([law.get(key, 0.0) for law in self.model.friction])
 
 
-def model_file_text(found: Identification, name: str) -> str:
-    """The model as a model file (docs/model_file.md), with every digit. Raises RobotError, SolverError."""
-    return identified_model(found).file_text(
-        name=name, source=_source(found), validity=_validity(found)
-    )
-
-
 def identified_model(found: Identification) -> FastModel:
     """The description's chain with the identified links, rotors and friction. Raises RobotError."""
     return _described(found).identified(found.model)
@@ -308,28 +300,3 @@ def urdf_of(found: Identification) -> Path:
             f"robot {found.robot.name}: expected a description, whose geometry the model has; give --urdf"
         )
     return found.robot.urdf
-
-
-def _source(found: Identification) -> str:
-    names = listed([path.name for path in found.recordings])
-    return (
-        f"`ids identify` on {counted(len(found.recordings), 'recording')} ({names}): {found.samples} samples, "
-        f"{found.duration:.1f} s; prior and geometry: {urdf_of(found).name}; friction law "
-        f"{found.law}, prior strength {found.prior_strength:g}, torque delay {1e3 * found.delay:.1f} "
-        f"ms; {found.filter}; efforts: {found.effort}"
-    )
-
-
-def _validity(found: Identification) -> str:
-    error = ", ".join(
-        f"{joint} {value:.3g} {unit}"
-        for joint, value, unit in zip(
-            found.joints, found.held_out["identified"], found.units, strict=True
-        )
-    )
-    return (
-        "All links are physically consistent, so H is positive definite. Root mean square error on "
-        f"data that were held out: {error}. Within the ranges stated as `seen`, of the robot, load and "
-        "temperature of the recordings: friction and offset differ on another day. Masses of single "
-        "links are mostly those of the description: torques don't determine them."
-    )
