@@ -13,18 +13,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics import _core
-from inverse_dynamics.contacts.contacts import LEAST_GAIN
 from inverse_dynamics.evaluation.bands import LEVEL, SHARE, TorqueBand
 from inverse_dynamics.identification.cross_validation import errors_of
 from inverse_dynamics.identification.result import Level, valid_samples
 from inverse_dynamics.outputs.plain import plain
-from inverse_dynamics.robots.model_errors import SCHEMA, read_model_errors, sha256
+from inverse_dynamics.robots.model_errors import LEAST_GAIN, SCHEMA, sha256
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-    from pathlib import Path
 
-    from inverse_dynamics._core import ArmFit, ArmFitter, ArmUncertainty, Solver
+    from inverse_dynamics._core import ArmFit, ArmFitter, Solver
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.blocks import Block
     from inverse_dynamics.identification.cross_validation import Chosen
@@ -166,15 +164,3 @@ def _held_out(found: Identification) -> dict[str, Any]:
 
 def _rows(values: Iterable[Floats], digits: int) -> list[list[float]]:
     return [[float(f"{x:.{digits}g}") for x in row] for row in values]
-
-
-def read_uncertainty(model: Path) -> tuple[ArmUncertainty | None, str]:
-    """Uncertainty of the model; or None, and why.
-
-    Raises RobotError: a file that isn't one of `ids identify`.
-    """
-    content, why = read_model_errors(model)
-    if content is None:
-        return None, why
-    factor = np.array(content["deviations"], dtype=float).T
-    return _core.ArmUncertainty(content["friction"], factor), ""
