@@ -49,6 +49,7 @@ class Chosen:
     law: str
     prior_strength: float
     delay: float
+    blocks: Sequence[Block]  # what the fit is to: samples in motion, the delay made up for
     fit: ArmFit
     band: Floats  # (n,) half the width of the 95 % band
     noise: Floats  # (n,) standard deviation of held-out torques of a joint while it moves
@@ -88,9 +89,8 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
             alternatives.append(parts.left_out(law, strength, starts))
             starts = alternatives[-1].fits
     best, choices = _simplest(alternatives, whole["step"].noise, parts.delay)
-    data = parts.data
-    if step > 1:
-        data = fitter.data([block.later(parts.delay).fitted for block in blocks])
+    blocks = [block.later(parts.delay) for block in blocks]
+    data = parts.data if step == 1 else fitter.data([block.fitted for block in blocks])
     options = ArmFitOptions(best.law, prior_strength=best.prior_strength)
     fit = fitter.fit(data, options, whole[best.law])
     # as solvers compute torques: the delay isn't made up for
@@ -103,6 +103,7 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
         law=best.law,
         prior_strength=best.prior_strength,
         delay=parts.delay,
+        blocks=blocks,
         fit=fit,
         band=np.quantile(errors, _BAND, axis=0),
         noise=noise_in_motion(errors, qd, fit.friction),

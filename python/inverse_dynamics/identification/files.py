@@ -14,8 +14,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from inverse_dynamics.identification.result import identified_model, urdf_of
-from inverse_dynamics.identification.uncertainty import uncertainty_text
-from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.robots.robot_files import robot_text
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.wording import counted, listed
@@ -65,19 +63,6 @@ def write_identification(
     return IdentificationFiles(*found.files(out))
 
 
-def identification_texts(found: Identification, files: Sequence[Path]) -> tuple[str, ...]:
-    """Contents of the files, in their order. Raises RobotError, SolverError."""
-    named = IdentificationFiles(*files)
-    model = model_file_text(found, f"{named.robot.stem}_model")
-    return (
-        _run_configuration(found, named),
-        model,
-        uncertainty_text(found, model),
-        json_text(found.numbers()),
-        found.page(),
-    )
-
-
 def model_file_text(found: Identification, name: str) -> str:
     """The model as a model file (docs/model_file.md), with every digit. Raises RobotError, SolverError."""
     names = listed([path.name for path in found.recordings])
@@ -100,17 +85,19 @@ def model_file_text(found: Identification, name: str) -> str:
     )
 
 
-def _run_configuration(found: Identification, files: IdentificationFiles) -> str:
+def run_configuration_text(found: Identification, files: Sequence[Path]) -> str:
+    """The identified robot, for --robot of every verb. Raises RobotError."""
+    named = IdentificationFiles(*files)
     robot, gains = found.robot, found.model.drive_gains
     names = ", ".join(path.name for path in found.recordings)
     identified = replace(
         robot,
-        name=files.robot.stem,
+        name=named.robot.stem,
         description=f"{robot.name}, identified from {names}",
         plugin=RIGID_BODY,
-        model=files.model,
+        model=named.model,
         friction=True,
         drive_gains=robot.drive_gains if gains is None else tuple(gains.tolist()),
-        source=f"identified from {names}: {files.page.name}, {files.figures.name}",
+        source=f"identified from {names}: {named.page.name}, {named.figures.name}",
     )
-    return robot_text(identified, files.robot)
+    return robot_text(identified, named.robot)

@@ -21,7 +21,7 @@ from inverse_dynamics.identification.baselines import (
     baselines,
     root_mean_squares,
 )
-from inverse_dynamics.identification.blocks import Block, blocks_of, moving
+from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.coupling import coupling_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
 from inverse_dynamics.identification.drive_gains import check_gains, identify_drive_gains
@@ -258,9 +258,9 @@ def _held_out(
         chosen = choose(fitter, others)
         # errors are correlated in time: some samples suffice for the band
         step = 1 + sum(map(len, others)) // _BAND_SAMPLES
-        later = [block.later(chosen.delay, step) for block in moving(others)]
-        known = knowledge(fitter, chosen.fit, later, chosen.options)
-        factor = factor_of(fitter, chosen.fit, later, known, law=chosen.law)
+        some = [block.later(0.0, step) for block in chosen.blocks]
+        known = knowledge(fitter, chosen.fit, some, chosen.options)
+        factor = factor_of(fitter, chosen.fit, some, known, law=chosen.law)
         band = band_of(chosen, factor, others, limits)
         solver = fitted_solver(described, _model(fitter, chosen, others, None))
         for block in group:
@@ -316,7 +316,7 @@ def _result(
     first, links = evaluations[0], tuple(joint.child for joint in chain)
     blocks = [block for group in groups for block in group]
     chosen = choose(fitter, blocks)
-    later = [block.later(chosen.delay) for block in moving(blocks)]
+    later = chosen.blocks
     errors = [errors_of(fitter, chosen.fit, block) for block in later]
     independent, samples = independent_samples(errors), sum(map(len, errors))
     known = knowledge(fitter, chosen.fit, later, chosen.options)

@@ -20,6 +20,7 @@ import numpy as np
 
 from inverse_dynamics._core import FastModel, Solver
 from inverse_dynamics.errors import EvaluationError, RobotError
+from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.show.result import ResultFiles
@@ -241,10 +242,18 @@ class Identification(ResultFiles):
         return identification_page(self)
 
     def texts(self, files: Sequence[Path]) -> tuple[str, ...]:
-        """Run configuration, model, what it may be wrong by, all numbers, page."""
-        from inverse_dynamics.identification.files import identification_texts
+        """Run configuration, model, what it may be wrong by, all numbers, page. Raises RobotError, SolverError."""
+        from inverse_dynamics.identification import files as text_of
+        from inverse_dynamics.identification.uncertainty import uncertainty_text
 
-        return identification_texts(self, files)
+        model = text_of.model_file_text(self, files[1].stem)
+        return (
+            text_of.run_configuration_text(self, files),
+            model,
+            uncertainty_text(self, model),
+            json_text(self.numbers()),
+            self.page(),
+        )
 
     def test(self, fresh: Sequence[Path]) -> None:
         """Read the model: the solver's own reader computes the rows of checks, or raises SolverError."""
