@@ -16,11 +16,7 @@ from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run, torqu
 from inverse_dynamics.evaluation.posture import locked_joints, posture_of
 from inverse_dynamics.evaluation.run import RunOptions, of_recording, overridden
 from inverse_dynamics.evaluation.turns import on_one_turn
-from inverse_dynamics.identification.baselines import (
-    baseline_torques,
-    baselines,
-    root_mean_squares,
-)
+from inverse_dynamics.identification.baselines import baseline_torques, baselines
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.coupling import coupling_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
@@ -49,7 +45,7 @@ from inverse_dynamics.identification.result import (
     Identification,
     IdentificationError,
     IdentifiedModel,
-    fitted_solver,
+    solver_of_model,
     valid_samples,
 )
 from inverse_dynamics.identification.uncertainty import (
@@ -262,7 +258,7 @@ def _held_out(
         known = knowledge(fitter, chosen.fit, some, chosen.options)
         factor = factor_of(fitter, chosen.fit, some, known, law=chosen.law)
         band = band_of(chosen, factor, others, limits)
-        solver = fitted_solver(described, _model(fitter, chosen, others, None))
+        solver = solver_of_model(described.identified(_model(fitter, chosen, others, None)))
         for block in group:
             motion = block.q, block.qd, block.qdd
             torques = baseline_torques(solvers, motion, fitted)
@@ -331,11 +327,12 @@ def _result(
     model = _model(fitter, chosen, blocks, gains)
     levels: tuple[Level, ...] = ()
     if by_day:
-        solver = fitted_solver(described, model)
+        solver = solver_of_model(described.identified(model))
         recordings = dict.fromkeys(block.recording for block in held_out)
         levels = tuple(level_of(recording, held_out, solver) for recording in recordings)
-    rmse = root_mean_squares([block.errors for block in held_out])
-    measured, identified, band = valid_samples(held_out, "measured", "identified", "band")
+    measured, band = valid_samples(held_out, "measured", "band")
+    unseen = {c: measured - valid_samples(held_out, c)[0] for c in held_out[0].computed}
+    rmse = {column: np.sqrt((error**2).mean(0)) for column, error in unseen.items()}
     delays = np.array([block.delay for block in held_out])
     return Identification(
         robot=first.robot,
@@ -354,7 +351,7 @@ def _result(
         samples=samples,
         duration=float(sum(e.time[-1] for e in evaluations)),
         held_out=rmse,
-        coverage=(np.abs(measured - identified) <= band).mean(0),
+        coverage=(np.abs(unseen["identified"]) <= band).mean(0),
         blocks=tuple(held_out),
         noise=np.sqrt((np.concatenate(errors) ** 2).mean(0)),
         independent=independent,

@@ -265,7 +265,7 @@ class Identification(ResultFiles):
 
     def solver(self) -> Solver:
         """The identified model as a solver, as `Solver(model=...)` of its model file is."""
-        return fitted_solver(_described(self), self.model)
+        return solver_of_model(identified_model(self))
 
     @property
     def offsets(self) -> Floats:
@@ -283,21 +283,18 @@ class Identification(ResultFiles):
 
 def identified_model(found: Identification) -> FastModel:
     """The description's chain with the identified links, rotors and friction. Raises RobotError."""
-    return _described(found).identified(found.model)
-
-
-def _described(found: Identification) -> FastModel:
     robot = found.robot
-    return FastModel.from_urdf(
+    described = FastModel.from_urdf(
         read_description(urdf_of(found)), root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
+    return described.identified(found.model)
 
 
-def fitted_solver(described: FastModel, model: IdentifiedModel) -> Solver:
-    """The solver of a model of the description's chain."""
+def solver_of_model(identified: FastModel) -> Solver:
+    """The model as a solver."""
     with TemporaryDirectory() as directory:
         file = Path(directory) / "model.yaml"
-        text = described.identified(model).file_text(name="identified", source="", validity="")
+        text = identified.file_text(name="identified", source="", validity="")
         file.write_text(text, encoding="utf-8")
         return Solver(RIGID_BODY, model=f"{file}")
 
