@@ -242,7 +242,7 @@ class Identification(ResultFiles):
         return identification_page(self)
 
     def texts(self, files: Sequence[Path]) -> tuple[str, ...]:
-        """Run configuration, model, what it may be wrong by, all numbers, page. Raises RobotError, SolverError."""
+        """Run configuration, model, what it may be wrong by, all numbers, page."""
         from inverse_dynamics.identification import files as text_of
         from inverse_dynamics.identification.uncertainty import uncertainty_text
 
