@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics import Solver, _core, evaluate
-from inverse_dynamics.identification.blocks import blocks_outside, together
+from inverse_dynamics.identification.blocks import FEWEST, block_of
 from inverse_dynamics.identification.cross_validation import choose
+from inverse_dynamics.identification.files import model_file_text
 from inverse_dynamics.identification.knowledge import knowledge
-from inverse_dynamics.identification.result import model_file_text, urdf_of
+from inverse_dynamics.identification.result import urdf_of
 from inverse_dynamics.identification.uncertainty import factor_of
 from inverse_dynamics.payload.payload import Samples, fit_payload, samples_of, with_load
 from inverse_dynamics.robots.descriptions import read_description
@@ -78,7 +79,9 @@ class Arm:
         windows: list[Samples] = []
         models: list[tuple[Solver, _core.ArmUncertainty]] = []
         for begin in _begins(evaluation.time, seconds):
-            rest = blocks_outside(evaluation, begin, begin + seconds)
+            first, after = np.searchsorted(evaluation.time, [begin, begin + seconds]).tolist()
+            edges = ((0, first), (after, len(evaluation.time)))
+            rest = [block_of(evaluation, slice(a, b)) for a, b in edges if b - a >= FEWEST]
             within = (samples.time >= begin) & (samples.time < begin + seconds)
             windows.append(part(samples, within))
             models.append(_model(found, rest, directory, len(models), nested=nested))
@@ -116,10 +119,10 @@ def _model(
         chosen = choose(fitter, rest)
         law, strength, delay, fit = chosen.law, chosen.prior_strength, chosen.delay, chosen.fit
     later = [block.later(delay) for block in rest]
+    options = _core.ArmFitOptions(law, prior_strength=strength)
     if not nested:
-        options = _core.ArmFitOptions(law, prior_strength=strength)
-        fit = fitter.fit(fitter.data(together(later)), options)
-    known = knowledge(fitter, fit, later, law=law, prior_strength=strength, worth=1.0)
+        fit = fitter.fit(fitter.data([block.fitted for block in later]), options)
+    known = knowledge(fitter, fit, later, options)
     factor = factor_of(fitter, fit, later, known, law=law)
     model = replace(
         found.model,

@@ -40,7 +40,7 @@ from inverse_dynamics.evaluation.evaluation import (
 )
 from inverse_dynamics.evaluation.run import RunOptions, of_run
 from inverse_dynamics.progress import no_progress
-from inverse_dynamics.robots.model_errors import read_model_errors
+from inverse_dynamics.robots.model_errors import LEAST_GAIN, read_model_errors
 from inverse_dynamics.show.result import PAGE, SERIES, ResultDirectory, files_of
 from inverse_dynamics.wording import counted, listed
 
@@ -57,9 +57,6 @@ if TYPE_CHECKING:
 
 FALSE_ALARMS = 1.0
 """Default, per hour."""
-
-LEAST_GAIN = 10.0
-"""1/s: contacts end 0.2 s after a force; and that of thresholds from held-out errors."""
 
 _GAIN_BY_TRACKING = 0.3  # the most with which the time constant is 1 / gain: motion_tracker.hpp
 _MOST_GAIN = 60.0  # 1/s: contacts are noticed within 17 ms

@@ -65,11 +65,3 @@ def _refitted(
     values = [np.linalg.lstsq(columns[:, :, j], e)[0] for j, e in enumerate(errors.T)]
     rigid, own = parts(q, qd, computed)
     return np.asarray(rigid + np.einsum("kcj,jc->kj", own, values))
-
-
-def root_mean_squares(columns: Sequence[Mapping[str, Floats]]) -> dict[str, Floats]:
-    """(n,) by name, of errors (M, n) of blocks by name."""
-    return {
-        name: np.sqrt((np.concatenate([c[name] for c in columns]) ** 2).mean(0))
-        for name in columns[0]
-    }

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     FitBlock = tuple[Floats, Floats, Floats, Floats]
     """q, qd, qdd, tau, (N, n) each: what ArmFitter takes."""
 
-_FEWEST = 20  # samples that a block can be differentiated with
+FEWEST = 20  # samples that a block can be differentiated with
 
 _ARRAYS = ("time", "instants", "used", "q", "qd", "qdd", "tau", "counts", "rests")  # of a block
 _REST = 0.01  # of each joint's greatest velocity, which a moving arm's joints aren't all below
@@ -49,32 +49,29 @@ class Block:
     def __len__(self) -> int:
         return len(self.time)
 
-    def later(self, delay: float) -> Block:
-        """The same torques with the states of `delay` [s] before: what they answer to.
+    def later(self, delay: float, step: int = 1) -> Block:
+        """Each `step`-th sample, its torques with the states of `delay` [s] before: what they answer to.
 
         States before the block's first sample aren't known: these samples are invalid.
         """
+        found = self.rows(slice(None, None, step))
         if delay == 0:
-            return self
-        at, known = self.instants - delay, self.instants[self.used]
-        q, qd, qdd = (_at(at, known, v[self.used]) for v in (self.q, self.qd, self.qdd))
+            return found
+        at, known = found.instants - delay, self.instants[self.used]
+        q, qd, qdd = (
+            np.ascontiguousarray(np.transpose([np.interp(at, known, c) for c in v[self.used].T]))
+            for v in (self.q, self.qd, self.qdd)
+        )
         within = (at >= known[0]) & (at <= known[-1])
-        return replace(self, q=q, qd=qd, qdd=qdd, counts=self.counts & within)
+        return replace(found, q=q, qd=qd, qdd=qdd, counts=found.counts & within)
 
     def parts(self, count: int) -> list[Block]:
         """The block in so many parts, with its accelerations."""
         edges = np.linspace(0, len(self.time), count + 1).round().astype(int)
-        return [self._rows(slice(first, after)) for first, after in pairwise(edges)]
+        return [self.rows(slice(first, after)) for first, after in pairwise(edges)]
 
-    def thinned(self, step: int) -> Block:
-        """Each sample whose number is a multiple of step, with its acceleration."""
-        return self._rows(slice(None, None, step))
-
-    def moving(self) -> Block:
-        """Without the samples at rest."""
-        return self._rows(~self.rests) if self.rests.any() else self
-
-    def _rows(self, rows: slice | Mask) -> Block:
+    def rows(self, rows: slice | Mask) -> Block:
+        """Some of the samples, with their accelerations."""
         return replace(self, **{name: getattr(self, name)[rows] for name in _ARRAYS})
 
     @cached_property
@@ -86,30 +83,19 @@ class Block:
         return self.q[c], self.qd[c], self.qdd[c], self.tau[c]
 
 
-def _at(at: Floats, time: Floats, values: Floats) -> Floats:
-    columns = [np.interp(at, time, column) for column in values.T]
-    return np.ascontiguousarray(np.transpose(columns))
-
-
-def blocks_outside(evaluation: Evaluation, begin: float, end: float) -> list[Block]:
-    """What a recording has before and after a part of it [s], each if it is long enough."""
-    first, after = np.searchsorted(evaluation.time, [begin, end]).tolist()
-    edges = ((0, first), (after, len(evaluation.time)))
-    return [_block(evaluation, slice(a, b)) for a, b in edges if b - a >= _FEWEST]
-
-
 def blocks_of(evaluation: Evaluation, count: int) -> list[Block]:
     """A recording cut into so many blocks of equally many samples."""
     edges = np.linspace(0, len(evaluation.time), count + 1).round().astype(int)
-    if np.diff(edges).min() < _FEWEST:
+    if np.diff(edges).min() < FEWEST:
         raise IdentificationError(
-            f"{evaluation.bag}: expected at least {_FEWEST * count} samples, got "
+            f"{evaluation.bag}: expected at least {FEWEST * count} samples, got "
             f"{len(evaluation.time)}; record a longer motion"
         )
-    return [_block(evaluation, slice(first, after)) for first, after in pairwise(edges.tolist())]
+    return [block_of(evaluation, slice(first, after)) for first, after in pairwise(edges.tolist())]
 
 
-def _block(evaluation: Evaluation, rows: slice) -> Block:
+def block_of(evaluation: Evaluation, rows: slice) -> Block:
+    """Some neighbouring samples of a recording."""
     log, samples = evaluation.log, evaluation.samples
     used = ~(samples.repeated | samples.non_increasing)
     qdd, instants = _accelerations(evaluation, rows)
@@ -146,10 +132,5 @@ def moving(blocks: Sequence[Block]) -> list[Block]:
     At rest friction is whatever holds the arm, anything up to its step. A fit would take it for a step off
     zero velocity, and for gravity.
     """
-    found = [block.moving() for block in blocks]
-    return [block for block in found if len(block) >= _FEWEST] or list(blocks)
-
-
-def together(blocks: Sequence[Block]) -> list[FitBlock]:
-    """What a fit takes."""
-    return [block.fitted for block in blocks]
+    found = [block.rows(~block.rests) if block.rests.any() else block for block in blocks]
+    return [block for block in found if len(block) >= FEWEST] or list(blocks)

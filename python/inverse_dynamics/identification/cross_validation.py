@@ -16,7 +16,7 @@ import numpy as np
 
 from inverse_dynamics._core import ArmFitOptions
 from inverse_dynamics.evaluation.bands import NORMAL, rest_share
-from inverse_dynamics.identification.blocks import moving, together
+from inverse_dynamics.identification.blocks import moving
 from inverse_dynamics.identification.result import LAWS, Choice
 
 if TYPE_CHECKING:
@@ -49,22 +49,16 @@ class Chosen:
     law: str
     prior_strength: float
     delay: float
+    blocks: Sequence[Block]  # what the fit is to: samples in motion, the delay made up for
     fit: ArmFit
     band: Floats  # (n,) half the width of the 95 % band
     noise: Floats  # (n,) standard deviation of held-out torques of a joint while it moves
     choices: tuple[Choice, ...]
 
-
-@dataclass(frozen=True)
-class _Alternative:
-    law: str
-    prior_strength: float
-    fits: list[ArmFit]  # to all parts but one
-    errors: list[Floats]  # of that part, (M, n), the delay made up for
-
-    def scores(self, noise: Floats) -> Floats:
-        """Of each part: mean over the joints of the RMSE in units of the noise."""
-        return np.array([(np.sqrt((e**2).mean(0)) / noise).mean() for e in self.errors])
+    @property
+    def options(self) -> ArmFitOptions:
+        """Those of the fit."""
+        return ArmFitOptions(self.law, prior_strength=self.prior_strength)
 
 
 def errors_of(fitter: ArmFitter, fit: ArmFit, block: Block) -> Floats:
@@ -82,39 +76,34 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     """
     blocks = moving(blocks)
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
-    delay, parts = _delayed(fitter, blocks, step)
-    whole: dict[str, ArmFit] = {}
+    recorded = _Parts(fitter, blocks, 0.0, step)
+    parts = _without_delay(fitter, blocks, recorded, step)
     alternatives: list[_Alternative] = []
+    whole: dict[str, ArmFit] = {}
     start = None
     for law in LAWS:
         options = ArmFitOptions(law, prior_strength=STRENGTHS[1], shift=True)
         start = whole[law] = fitter.fit(parts.data, options, start)
-        starts = [start] * len(parts)
+        starts = [start] * len(parts.blocks)
         for strength in STRENGTHS:
             alternatives.append(parts.left_out(law, strength, starts))
             starts = alternatives[-1].fits
-    best, choices = _simplest(alternatives, whole["step"].noise, delay)
-    fit = fitter.fit(
-        parts.data if step == 1 else fitter.data(together(_later(blocks, delay, 1))),
-        ArmFitOptions(best.law, prior_strength=best.prior_strength),
-        whole[best.law],
-    )
-    unshifted = parts.left_out(best.law, best.prior_strength, best.fits, shift=False)
+    best, choices = _simplest(alternatives, whole["step"].noise, parts.delay)
+    blocks = [block.later(parts.delay) for block in blocks]
+    data = parts.data if step == 1 else fitter.data([block.fitted for block in blocks])
+    options = ArmFitOptions(best.law, prior_strength=best.prior_strength)
+    fit = fitter.fit(data, options, whole[best.law])
     # as solvers compute torques: the delay isn't made up for
-    as_recorded = _cut([block.thinned(step) for block in blocks])
-    errors = np.abs(
-        np.concatenate(
-            [
-                errors_of(fitter, f, part)
-                for f, part in zip(unshifted.fits, as_recorded, strict=True)
-            ]
-        )
+    tested = parts.left_out(
+        best.law, best.prior_strength, best.fits, shift=False, tested=recorded.blocks
     )
-    qd = np.concatenate([part.fitted[1] for part in as_recorded])
+    errors = np.abs(np.concatenate(tested.errors))
+    qd = np.concatenate([part.fitted[1] for part in recorded.blocks])
     return Chosen(
         law=best.law,
         prior_strength=best.prior_strength,
-        delay=delay,
+        delay=parts.delay,
+        blocks=blocks,
         fit=fit,
         band=np.quantile(errors, _BAND, axis=0),
         noise=noise_in_motion(errors, qd, fit.friction),
@@ -133,15 +122,30 @@ def noise_in_motion(errors: Floats, qd: Floats, friction: Sequence[Mapping[str, 
     return np.asarray(np.nanquantile(counted, _BAND, axis=0) / NORMAL)
 
 
+@dataclass(frozen=True)
+class _Alternative:
+    law: str
+    prior_strength: float
+    fits: list[ArmFit]  # to all parts but one
+    errors: list[Floats]  # of that part, (M, n)
+
+    def scores(self, noise: Floats) -> Floats:
+        """Of each part: mean over the joints of the RMSE in units of the noise."""
+        return np.array([(np.sqrt((e**2).mean(0)) / noise).mean() for e in self.errors])
+
+
 class _Parts:
-    """Blocks cut into parts that are left out in turn."""
+    """Parts of blocks, to be left out in turn: more and shorter ones than the blocks, for a steadier choice.
 
-    def __init__(self, fitter: ArmFitter, blocks: Sequence[Block]) -> None:
-        self._fitter, self._parts = fitter, _cut(blocks)
-        self.data = fitter.data(together(self._parts))
+    delay: made up for. step: from one sample to the next.
+    """
 
-    def __len__(self) -> int:
-        return len(self._parts)
+    def __init__(self, fitter: ArmFitter, blocks: Sequence[Block], delay: float, step: int) -> None:
+        each = max(1, round(_FOLDS / len(blocks)))
+        self.delay = delay
+        self.blocks = [part for block in blocks for part in block.later(delay, step).parts(each)]
+        self.data = fitter.data([part.fitted for part in self.blocks])
+        self._fitter = fitter
 
     def left_out(
         self,
@@ -151,62 +155,53 @@ class _Parts:
         *,
         passes: int = _PASSES,
         shift: bool = True,
+        tested: Sequence[Block] | None = None,
     ) -> _Alternative:
-        """Fits to all parts but one, each from a start, and the errors of that part."""
+        """Fits to all parts but one, each from a start, and the errors of that part, or of that of `tested`."""
         options = ArmFitOptions(law, prior_strength=strength, most_passes=passes, shift=shift)
-        found = _Alternative(law, strength, [], [])
-        for k, (part, start) in enumerate(zip(self._parts, starts, strict=True)):
+        fits = []
+        for k, start in enumerate(starts):
             options.without = k
-            fit = self._fitter.fit(self.data, options, start)
-            found.fits.append(fit)
-            found.errors.append(errors_of(self._fitter, fit, part))
-        return found
+            fits.append(self._fitter.fit(self.data, options, start))
+        pairs = zip(fits, tested or self.blocks, strict=True)
+        errors = [errors_of(self._fitter, fit, part) for fit, part in pairs]
+        return _Alternative(law, strength, fits, errors)
 
 
-def _cut(blocks: Sequence[Block]) -> list[Block]:
-    """Parts to be left out in turn: more and shorter ones than the blocks, for a steadier choice."""
-    each = max(1, round(_FOLDS / len(blocks)))
-    return [part for block in blocks for part in block.parts(each)]
-
-
-def _later(blocks: Sequence[Block], delay: float, step: int) -> list[Block]:
-    """Blocks with the delay made up for, thinned."""
-    return [block.later(delay).thinned(step) for block in blocks]
-
-
-def _delayed(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[float, _Parts]:
-    """By how much the torques are later than the states [s], zero where that predicts as well; parts without it.
-
-    A delay must predict parts that are left out better.
-    """
-    delay, start = _delay(fitter, blocks, thinned)
-    parts = _Parts(fitter, _later(blocks, 0.0, thinned))
+def _without_delay(
+    fitter: ArmFitter, blocks: Sequence[Block], recorded: _Parts, step: int
+) -> _Parts:
+    """Parts with the delay of least noise made up for, if those that are left out are predicted better."""
+    delay, start = _delay(fitter, blocks, step)
     if delay == 0:
-        return delay, parts
-    later = _Parts(fitter, _later(blocks, delay, thinned))
+        return recorded
+    later = _Parts(fitter, blocks, delay, step)
+    starts = [start] * len(recorded.blocks)
     before, after = (
-        tried.left_out(_DELAY_LAW, STRENGTHS[1], [start] * len(tried), passes=1).scores(start.noise)
-        for tried in (parts, later)
+        parts.left_out(_DELAY_LAW, STRENGTHS[1], starts, passes=1).scores(start.noise).mean()
+        for parts in (recorded, later)
     )
-    return (delay, later) if after.mean() < before.mean() else (0.0, parts)
+    return later if after < before else recorded
 
 
 def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[float, ArmFit]:
-    """The delay of least noise [s], and a fit with nearly that delay; zero: there is none.
+    """By how much the torques are later than the states [s], and a fit with nearly that delay; zero: there is none.
 
-    The vertex of the parabola through three costs, gone to twice. Far from the least cost, where there
+    The vertex of the parabola through the noise at three delays, gone to twice. Far from the least noise, where there
     is none, the way leads downhill.
     """
-    step, center, vertices = max(_period(blocks), _DELAY_STEP), 0.0, 0
+    periods = np.concatenate([np.diff(block.instants[block.used]) for block in blocks])
+    step = max(float(np.median(periods[periods > 0])), _DELAY_STEP)
+    options = ArmFitOptions(
+        _DELAY_LAW, prior_strength=STRENGTHS[1], most_passes=_PASSES, shift=True
+    )
+    center, vertices = 0.0, 0
     start: ArmFit | None = None
     for _ in range(_MOST_DELAY_STEPS):
         costs = []
         for delay in (center - step, center, center + step):
-            later = fitter.data(together(_later(blocks, delay, thinned)))
-            options = ArmFitOptions(
-                _DELAY_LAW, prior_strength=STRENGTHS[1], most_passes=_PASSES, shift=True
-            )
-            start = fitter.fit(later, options, start)
+            samples = [block.later(delay, thinned).fitted for block in blocks]
+            start = fitter.fit(fitter.data(samples), options, start)
             # samples at the ends of blocks are fewer where the delay is greater
             costs.append(2 * float(np.log(start.noise).sum()))
         slope, curvature = costs[0] - costs[2], costs[0] - 2 * costs[1] + costs[2]
@@ -221,11 +216,6 @@ def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[fl
     assert start is not None
     found = vertices == _VERTICES and abs(center) >= _LEAST_DELAY
     return (center if found else 0.0), start
-
-
-def _period(blocks: Sequence[Block]) -> float:
-    steps = np.concatenate([np.diff(block.instants[block.used]) for block in blocks])
-    return float(np.median(steps[steps > 0]))
 
 
 def _simplest(

@@ -16,6 +16,7 @@ determine it: its interval must be narrow with a hundredth of the prior, too.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -56,6 +57,7 @@ _LOOSENED = 0.01  # share of the prior that is left where data must decide
 _PASSES = 40
 _BLOCKS = 5  # of each recording, for intervals
 _FAR = 5.0  # factor by which gains of a robot may differ from their median, to start from
+_options = partial(ArmFitOptions, _LAW, prior_strength=_STRENGTH)
 
 
 @dataclass(frozen=True)
@@ -94,17 +96,23 @@ def identify_drive_gains(
         _read(path, load, described, progress, options)
         for path, load in [*((path, None) for path in recordings), *known_payloads]
     ]
-    fit = _fit(fitter, read)
-    half_widths = _half_widths(fitter, fit, read)
+    blocks = [block for recording in read for block in recording.blocks]
+    carried = [recording.carried for recording in read for _ in recording.blocks]
+    gains = _about(read)
+    torques = [(q, qd, qdd, current * gains) for q, qd, qdd, current in blocks]
+    start = fitter.fit(fitter.data(torques, carried=carried), _options())
+    currents = fitter.data(blocks, carried=carried)
+    fit = fitter.fit(currents, _options(most_passes=_PASSES, drive_gains=gains), start)
+    half_widths = _half_widths(fitter, fit, currents)
     known = half_widths <= MOST_UNCERTAIN
     _check(fitter, known, half_widths, stated, read)
-    gains = fit.drive_gains
-    assert gains is not None  # they were fitted
+    fitted = fit.drive_gains
+    assert fitted is not None
     return tuple(
         DriveGain(
             joint=joint,
-            value=float(gains[j]) if known[j] or stated is None else stated[j],
-            half_width=float(half_widths[j] * gains[j]) if known[j] else None,
+            value=float(fitted[j]) if known[j] or stated is None else stated[j],
+            half_width=float(half_widths[j] * fitted[j]) if known[j] else None,
             stated=None if stated is None else stated[j],
         )
         for j, joint in enumerate(fitter.joint_names)
@@ -169,25 +177,6 @@ def _check_load(path: Path | str, load: Mapping[str, Parameter]) -> None:
         )
 
 
-def _blocks(read: Sequence[_Recording]) -> tuple[list[FitBlock], list[dict[str, Any] | None]]:
-    blocks = [block for recording in read for block in recording.blocks]
-    return blocks, [recording.carried for recording in read for _ in recording.blocks]
-
-
-def _fit(fitter: ArmFitter, read: Sequence[_Recording]) -> ArmFit:
-    """Links, friction and gains of all recordings."""
-    blocks, carried = _blocks(read)
-    gains = _about(read)
-    torques = [(q, qd, qdd, current * gains) for q, qd, qdd, current in blocks]
-    start = fitter.fit(fitter.data(torques, carried=carried), _options())
-    options = _options(most_passes=_PASSES, drive_gains=gains)
-    return fitter.fit(fitter.data(blocks, carried=carried), options, start)
-
-
-def _options(**others: Any) -> ArmFitOptions:
-    return ArmFitOptions(_LAW, prior_strength=_STRENGTH, **others)
-
-
 def _about(read: Sequence[_Recording]) -> Floats:
     """(n,) gains to start from: what the description computes, by the currents."""
     computed = np.concatenate([r.evaluation.computed for r in read])
@@ -198,46 +187,33 @@ def _about(read: Sequence[_Recording]) -> Floats:
     return np.asarray(np.clip(gains, middle / _FAR, middle * _FAR))
 
 
-def _half_widths(fitter: ArmFitter, fit: ArmFit, read: Sequence[_Recording]) -> Floats:
+def _half_widths(fitter: ArmFitter, fit: ArmFit, currents: ArmData) -> Floats:
     """(n,) of the 95 % intervals of log k, the widest of three.
 
     What leaving out each block changes (the jackknife), for errors that are correlated;
     the cluster-robust ones, with the prior and hardly without.
     """
-    blocks, carried = _blocks(read)
-    samples = fitter.data(blocks, carried=carried)
-    data, prior, scores = fitter.information(fit, samples, _options())
+    gains, without = fit.drive_gains, []
+    assert gains is not None
+    for k in range(len(currents)):
+        again = fitter.fit(currents, _options(drive_gains=gains, without=k), fit)
+        assert again.drive_gains is not None
+        without.append(np.log(again.drive_gains))
+    deviations = [np.sqrt((len(currents) - 1) * np.var(without, axis=0))]
+    data, prior, scores = fitter.information(fit, currents, _options())
     n = len(fitter.joint_names)
     columns = (len(data) - 10 * n) // n
     at = 10 * n + columns * np.arange(1, n + 1) - 1
     values = np.zeros(len(data))
     values[: 10 * n] = fit.parameters.ravel()
-    deviations = [_jackknife(fitter, fit, samples, len(blocks))]
+    none = np.zeros((len(data), 0))
     for share in (1.0, _LOOSENED):
         known = Knowledge(
-            fitter.joint_names,
-            values,
-            fitter.prior,
-            data,
-            share * prior,
-            scores,
-            worth=1.0,
-            assumed=np.zeros((len(data), 0)),
+            fitter.joint_names, values, fitter.prior, data, share * prior, scores, assumed=none
         )
         deviations.append(np.sqrt(np.diag(known.covariance)[at]))
     widths: Floats = student_t(len(scores)) * np.max(deviations, axis=0)
     return widths
-
-
-def _jackknife(fitter: ArmFitter, fit: ArmFit, samples: ArmData, count: int) -> Floats:
-    """(n,) standard deviations of log k."""
-    without = []
-    for k in range(count):
-        again = fitter.fit(samples, _options(drive_gains=fit.drive_gains, without=k), fit)
-        assert again.drive_gains is not None
-        without.append(np.log(again.drive_gains))
-    deviation: Floats = np.sqrt((count - 1) * np.var(without, axis=0))
-    return deviation
 
 
 def _check(

@@ -11,15 +11,12 @@ arm.html         the report's page
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
-from inverse_dynamics.identification.result import model_file_text
-from inverse_dynamics.identification.uncertainty import uncertainty_text
-from inverse_dynamics.outputs.plain import json_text, plain
+from inverse_dynamics.identification.result import identified_model, urdf_of
 from inverse_dynamics.robots.robot_files import robot_text
 from inverse_dynamics.robots.robots import RIGID_BODY
+from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -27,8 +24,6 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.identification.hold_out import HoldOut
     from inverse_dynamics.identification.result import Identification
-
-SCHEMA = 1
 
 
 class IdentificationFiles(NamedTuple):
@@ -68,63 +63,41 @@ def write_identification(
     return IdentificationFiles(*found.files(out))
 
 
-def identification_texts(found: Identification, files: Sequence[Path]) -> tuple[str, ...]:
-    """Contents of the files, in their order. Raises RobotError, SolverError."""
-    named = IdentificationFiles(*files)
-    model = model_file_text(found, f"{named.robot.stem}_model")
-    return (
-        _run_configuration(found, named),
-        model,
-        uncertainty_text(found, model),
-        json_text(found.numbers()),
-        found.page(),
+def model_file_text(found: Identification, name: str) -> str:
+    """The model as a model file (docs/model_file.md), with every digit. Raises RobotError, SolverError."""
+    names = listed([path.name for path in found.recordings])
+    errors = ", ".join(
+        f"{joint} {value:.3g} {unit}"
+        for joint, value, unit in zip(
+            found.joints, found.held_out["identified"], found.units, strict=True
+        )
+    )
+    return identified_model(found).file_text(
+        name=name,
+        source=f"`ids identify` on {counted(len(found.recordings), 'recording')} ({names}): {found.samples} samples, "
+        f"{found.duration:.1f} s; prior and geometry: {urdf_of(found).name}; friction law "
+        f"{found.law}, prior strength {found.prior_strength:g}, torque delay {1e3 * found.delay:.1f} "
+        f"ms; {found.filter}; efforts: {found.effort}",
+        validity="All links are physically consistent, so H is positive definite. Root mean square error on "
+        f"data that were held out: {errors}. Within the ranges stated as `seen`, of the robot, load and "
+        "temperature of the recordings: friction and offset differ on another day. Masses of single "
+        "links are mostly those of the description: torques don't determine them.",
     )
 
 
-def _run_configuration(found: Identification, files: IdentificationFiles) -> str:
+def run_configuration_text(found: Identification, files: Sequence[Path]) -> str:
+    """The identified robot, for --robot of every verb. Raises RobotError."""
+    named = IdentificationFiles(*files)
     robot, gains = found.robot, found.model.drive_gains
     names = ", ".join(path.name for path in found.recordings)
     identified = replace(
         robot,
-        name=files.robot.stem,
+        name=named.robot.stem,
         description=f"{robot.name}, identified from {names}",
         plugin=RIGID_BODY,
-        model=files.model,
+        model=named.model,
         friction=True,
         drive_gains=robot.drive_gains if gains is None else tuple(gains.tolist()),
-        source=f"identified from {names}: {files.page.name}, {files.figures.name}",
+        source=f"identified from {names}: {named.page.name}, {named.figures.name}",
     )
-    return robot_text(identified, files.robot)
-
-
-def identification_numbers(found: Identification) -> dict[str, Any]:
-    """Everything but the samples, for JSON."""
-    robot = found.robot
-    return {
-        "schema": SCHEMA,
-        "robot": robot.name,
-        "plugin": robot.plugin,
-        "urdf": None if robot.urdf is None else str(robot.urdf),
-        **{
-            name: plain(getattr(found, name))
-            for name in found.__dataclass_fields__
-            if name not in ("robot", "blocks", "factor", "band")
-        },
-        "blocks": [
-            {
-                "recording": block.recording,
-                "from": float(block.time[0]),
-                "to": float(block.time[-1]),
-                "samples": int(block.counts.sum()),
-                "law": block.law,
-                "prior_strength": block.prior_strength,
-                "delay": block.delay,
-                "band": plain(block.band.mean(axis=0)),
-                "rmse": {
-                    column: plain(np.sqrt((errors**2).mean(axis=0)))
-                    for column, errors in block.errors.items()
-                },
-            }
-            for block in found.blocks
-        ],
-    }
+    return robot_text(identified, named.robot)

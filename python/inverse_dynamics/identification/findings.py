@@ -10,7 +10,7 @@ import numpy as np
 from inverse_dynamics.identification.knowledge import DOUBT, student_t
 from inverse_dynamics.identification.refusals import mean_unit
 from inverse_dynamics.identification.result import Finding
-from inverse_dynamics.identification.summary import delay_told
+from inverse_dynamics.identification.tables import delay_told
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -16,13 +16,9 @@ import numpy as np
 
 from inverse_dynamics.evaluation.evaluation import evaluate, torques_with_gravity
 from inverse_dynamics.evaluation.run import RunOptions
-from inverse_dynamics.identification.baselines import baseline_torques, baselines, root_mean_squares
-from inverse_dynamics.identification.result import (
-    IdentificationError,
-    model_file_text,
-    urdf_of,
-    valid_samples,
-)
+from inverse_dynamics.identification.baselines import baseline_torques, baselines
+from inverse_dynamics.identification.files import model_file_text
+from inverse_dynamics.identification.result import IdentificationError, urdf_of, valid_samples
 from inverse_dynamics.identification.uncertainty import uncertainty_text
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.descriptions import read_description
@@ -90,10 +86,12 @@ def hold_out(
         fitted = [(q, qd, present, own)]
     computed = baseline_torques(solvers, motion, fitted)
     computed["identified"] = (measured + result.computed - result.measured)[kept]
-    errors = {column: torques - measured[kept] for column, torques in computed.items()}
     return HoldOut(
         recording=recording,
-        rmse=root_mean_squares([errors]),
+        rmse={
+            column: np.sqrt(((torques - measured[kept]) ** 2).mean(0))
+            for column, torques in computed.items()
+        },
         coverage=np.asarray(result.coverage),
         notes=result.notes,
     )

@@ -16,12 +16,8 @@ from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run, torqu
 from inverse_dynamics.evaluation.posture import locked_joints, posture_of
 from inverse_dynamics.evaluation.run import RunOptions, of_recording, overridden
 from inverse_dynamics.evaluation.turns import on_one_turn
-from inverse_dynamics.identification.baselines import (
-    baseline_torques,
-    baselines,
-    root_mean_squares,
-)
-from inverse_dynamics.identification.blocks import Block, blocks_of, moving
+from inverse_dynamics.identification.baselines import baseline_torques, baselines
+from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.coupling import coupling_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
 from inverse_dynamics.identification.drive_gains import check_gains, identify_drive_gains
@@ -49,13 +45,13 @@ from inverse_dynamics.identification.result import (
     Identification,
     IdentificationError,
     IdentifiedModel,
-    fitted_solver,
+    solver_of_model,
     valid_samples,
 )
 from inverse_dynamics.identification.uncertainty import (
     band_of,
     factor_of,
-    levels_of,
+    level_of,
     with_levels,
 )
 from inverse_dynamics.progress import no_progress
@@ -69,9 +65,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics._core import ArmFitter, DescribedJoint, FastModel, Solver
     from inverse_dynamics.arrays import Floats
-    from inverse_dynamics.evaluation.bands import TorqueBand
     from inverse_dynamics.evaluation.evaluation import Evaluation
-    from inverse_dynamics.identification.baselines import Computed
     from inverse_dynamics.identification.drive_gains import KnownPayload
     from inverse_dynamics.identification.result import DriveGain, Level
     from inverse_dynamics.progress import Progress
@@ -141,23 +135,25 @@ def identify(
     robot, stated = overridden(robot, options), of_recording(options)
     check_accepted(accept)
     description = _description(robot)
-    if not recordings:
-        raise IdentificationError("recordings: expected at least one, got none")
-    _check_distinct([*recordings, *(path for path, _ in known_payloads)])
-    fitter = _fitter(robot, description)
-    motors, unfitted = coupling_of(coupling, robot.gears, len(fitter.joint_names))
-    # Links are the description's, whatever model is compared with.
-    posture = posture_of(
-        Path(recordings[0]),
-        replace(robot, model=None),
-        description,
-        fitter.joint_names,
-        topic=stated.get("topic"),
+    _check_given(recordings, known_payloads)
+    described = _core.FastModel.from_urdf(
+        description, root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
-    if posture.parameters:
-        robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
-    if posture.parameters or motors is not None:
-        fitter = _fitter(robot, description, motors)
+    joints = described.joint_names
+    motors, unfitted = coupling_of(coupling, robot.gears, len(joints))
+    # Links are the description's, whatever model is compared with.
+    links = replace(robot, model=None)
+    first, topic = Path(recordings[0]), stated.get("topic")
+    posture = posture_of(first, links, description, joints, topic=topic)
+    robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
+    fitter = _core.ArmFitter.from_urdf(
+        description,
+        root=robot.root,
+        tip=robot.tip,
+        gravity=robot.gravity,
+        locked_joints=locked_joints(robot),
+        coupling=motors,
+    )
     gains: tuple[DriveGain, ...] = ()
     if known_payloads:
         gains = identify_drive_gains(
@@ -168,53 +164,21 @@ def identify(
     evaluations = on_one_turn(
         [evaluate_run(open_run(path, robot, progress=progress, **stated)) for path in recordings]
     )
-    robot = evaluations[0].robot
     check_recordings(evaluations, accept)
+    robot = evaluations[0].robot
     plain = replace(robot, plugin=RIGID_BODY, model=None)
     evaluations = [replace(e, measured=torques_with_gravity(e, plain)) for e in evaluations]
-    groups = _groups(evaluations, blocks)
-    cut = [block for group in groups for block in group]
-    described = _core.FastModel.from_urdf(
-        description, root=robot.root, tip=robot.tip, gravity=robot.gravity
-    )
-    chain = _core.RobotDescription(description).chain(fitter.joint_names, robot.root)
     by_day = len(evaluations) > 1 and blocks is None
-    level = _effort_limits(chain) if by_day else None
-    held_out = _held_out(fitter, described, level, baselines(robot, description), groups, progress)
-    chosen = choose(fitter, cut)
-    found = _result(
-        described,
-        evaluations,
-        fitter,
-        cut,
-        chain,
-        held_out=held_out,
-        chosen=chosen,
-        by_day=by_day,
-    )
+    groups = _days(evaluations) if by_day else _groups(evaluations, blocks)
+    chain = _core.RobotDescription(description).chain(joints, robot.root)
+    solvers = baselines(robot, description)
+    limits = _effort_limits(chain) if by_day else None
+    held_out = _held_out(fitter, described, limits, solvers, groups, progress)
+    found = _result(fitter, described, chain, evaluations, groups, held_out, by_day=by_day)
     notes = tuple(dict.fromkeys((*posture.notes, *unfitted, *found.notes)))
     found = replace(found, drive_gains=gains, notes=notes)
     check_result(found, accept)
     return found
-
-
-def _fitter(robot: Robot, description: str, coupling: Floats | None = None) -> ArmFitter:
-    return _core.ArmFitter.from_urdf(
-        description,
-        root=robot.root,
-        tip=robot.tip,
-        gravity=robot.gravity,
-        locked_joints=locked_joints(robot),
-        coupling=coupling,
-    )
-
-
-def _check_distinct(recordings: Sequence[Path | str]) -> None:
-    """Of a recording that is given twice, a part would be predicted by a fit to itself."""
-    resolved = [Path(recording).resolve() for recording in recordings]
-    for recording, path in zip(recordings, resolved, strict=True):
-        if resolved.count(path) > 1:
-            raise IdentificationError(f"{recording}: expected each recording once, got it twice")
 
 
 def _description(robot: Robot) -> str:
@@ -226,36 +190,44 @@ def _description(robot: Robot) -> str:
     return read_description(robot.urdf)
 
 
-def _groups(evaluations: Sequence[Evaluation], asked: int | None) -> list[list[Block]]:
-    """Blocks that are held out together: whole recordings where there are several, else blocks of equal length.
+def _check_given(recordings: Sequence[Path | str], known: Sequence[KnownPayload]) -> None:
+    """Of a recording that is given twice, a part would be predicted by a fit to itself."""
+    if not recordings:
+        raise IdentificationError("recordings: expected at least one, got none")
+    given = [*recordings, *(path for path, _ in known)]
+    resolved = [Path(recording).resolve() for recording in given]
+    for recording, path in zip(given, resolved, strict=True):
+        if resolved.count(path) > 1:
+            raise IdentificationError(f"{recording}: expected each recording once, got it twice")
 
-    Recordings may be of different days, and differ as blocks of one day don't.
+
+def _days(evaluations: Sequence[Evaluation]) -> list[list[Block]]:
+    """Whole recordings, in groups that are held out together.
+
+    They may be of different days, and differ as blocks of one day don't.
     """
-    if len(evaluations) > 1 and asked is None:
-        whole = [block for evaluation in evaluations for block in blocks_of(evaluation, 1)]
-        edges = np.linspace(0, len(whole), min(len(whole), BLOCKS) + 1).round().astype(int)
-        return [whole[first:after] for first, after in pairwise(edges.tolist())]
+    whole = [block for evaluation in evaluations for block in blocks_of(evaluation, 1)]
+    edges = np.linspace(0, len(whole), min(len(whole), BLOCKS) + 1).round().astype(int)
+    return [whole[first:after] for first, after in pairwise(edges.tolist())]
+
+
+def _groups(evaluations: Sequence[Evaluation], asked: int | None) -> list[list[Block]]:
+    """Blocks, each held out by itself: as many of each recording as its share of the time, at least one."""
+    lengths = np.array([e.time[-1] for e in evaluations])
     if asked is None:
-        duration = sum(float(e.time[-1]) for e in evaluations)
-        asked = int(np.clip(duration // _SHORTEST_BLOCK, _FEWEST_BLOCKS, BLOCKS))
+        asked = int(np.clip(lengths.sum() // _SHORTEST_BLOCK, _FEWEST_BLOCKS, BLOCKS))
     elif asked < _FEWEST_BLOCKS:
         raise IdentificationError(f"blocks: expected at least {_FEWEST_BLOCKS}, got {asked}")
-    return [[block] for block in _cut(evaluations, asked)]
-
-
-def _cut(evaluations: Sequence[Evaluation], blocks: int) -> list[Block]:
-    """Blocks of all recordings: as many of each as its share of the time, at least one."""
-    lengths = np.array([e.time[-1] for e in evaluations])
-    counts = np.maximum(1, np.round(blocks * lengths / lengths.sum())).astype(int)
-    if len(evaluations) == 1:
-        counts[:] = blocks
+    counts = np.maximum(1, np.round(asked * lengths / lengths.sum())).astype(int)
     while counts.sum() < _FEWEST_BLOCKS:
         counts[lengths.argmax()] += 1
-    return [
-        block
-        for evaluation, count in zip(evaluations, counts, strict=True)
-        for block in blocks_of(evaluation, int(count))
-    ]
+    pairs = zip(evaluations, counts.tolist(), strict=True)
+    return [[block] for evaluation, count in pairs for block in blocks_of(evaluation, count)]
+
+
+def _effort_limits(chain: Sequence[DescribedJoint]) -> Floats:
+    """(n,) N m (prismatic N); infinite where none is stated."""
+    return np.array([joint.limits.get("effort", np.inf) for joint in chain])
 
 
 def _held_out(
@@ -269,17 +241,28 @@ def _held_out(
     """The blocks of each group, predicted by models fitted to, and chosen on, the others."""
     found = []
     present = solvers.get("present")
-    rows = [[] if present is None else [_computed(present, b) for b in group] for group in groups]
+    computed = [
+        [(q, qd, present.torques(q, qd, qdd), tau) for q, qd, qdd, tau in (b.fitted for b in group)]
+        if present is not None
+        else []
+        for group in groups
+    ]
     for k, group in enumerate(groups):
         progress("predicting held-out blocks", k, len(groups) + 1)
-        others = [block for i, other in enumerate(groups) if i != k for block in other]
-        fitted = [row for i, other in enumerate(rows) if i != k for row in other]
+        others = [block for other in (*groups[:k], *groups[k + 1 :]) for block in other]
+        fitted = [rows for other in (*computed[:k], *computed[k + 1 :]) for rows in other]
         chosen = choose(fitter, others)
-        band, solver = _banded(fitter, described, limits, chosen, others)
+        # errors are correlated in time: some samples suffice for the band
+        step = 1 + sum(map(len, others)) // _BAND_SAMPLES
+        some = [block.later(0.0, step) for block in chosen.blocks]
+        known = knowledge(fitter, chosen.fit, some, chosen.options)
+        factor = factor_of(fitter, chosen.fit, some, known, law=chosen.law)
+        band = band_of(chosen, factor, others, limits)
+        solver = solver_of_model(described.identified(_model(fitter, chosen, others, None)))
         for block in group:
             motion = block.q, block.qd, block.qdd
-            computed = baseline_torques(solvers, motion, fitted)
-            computed["identified"] = fitter.torques(chosen.fit, *motion)
+            torques = baseline_torques(solvers, motion, fitted)
+            torques["identified"] = fitter.torques(chosen.fit, *motion)
             found.append(
                 HeldOutBlock(
                     recording=block.recording,
@@ -288,7 +271,7 @@ def _held_out(
                     qd=block.qd,
                     counts=block.counts,
                     measured=block.tau,
-                    computed=computed,
+                    computed=torques,
                     band=band.half_widths(solver, *motion),
                     law=chosen.law,
                     prior_strength=chosen.prior_strength,
@@ -299,82 +282,60 @@ def _held_out(
     return found
 
 
-def _banded(
-    fitter: ArmFitter,
-    described: FastModel,
-    limits: Floats | None,
-    chosen: Chosen,
-    blocks: Sequence[Block],
-) -> tuple[TorqueBand, Solver]:
-    """The band of a fit to blocks, and its solver. Errors are correlated in time: some samples suffice."""
-    step = 1 + sum(map(len, blocks)) // _BAND_SAMPLES
-    later = [block.later(chosen.delay).thinned(step) for block in moving(blocks)]
-    known = knowledge(
-        fitter,
-        chosen.fit,
-        later,
-        law=chosen.law,
-        prior_strength=chosen.prior_strength,
-        worth=1.0,
+def _model(
+    fitter: ArmFitter, chosen: Chosen, blocks: Sequence[Block], drive_gains: Floats | None
+) -> IdentifiedModel:
+    samples = zip(*(block.fitted for block in blocks), strict=True)
+    q, qd, qdd, _ = (np.concatenate(values) for values in samples)
+    return IdentifiedModel(
+        parameters=chosen.fit.parameters,
+        rotor_inertia=chosen.fit.rotor_inertia,
+        friction=tuple(chosen.fit.friction),
+        drive_gains=drive_gains,
+        torque_deviation=chosen.band,
+        seen=np.array([np.stack([x.min(0), x.max(0)], axis=1) for x in (q, qd, qdd)]),
+        coupling=fitter.coupling,
     )
-    factor = factor_of(fitter, chosen.fit, later, known, law=chosen.law)
-    solver = fitted_solver(described, _model(fitter, chosen, blocks, None))
-    return band_of(chosen, factor, blocks, limits), solver
-
-
-def _computed(solver: Solver, block: Block) -> Computed:
-    """Of the samples to be fitted to."""
-    q, qd, qdd, measured = block.fitted
-    return q, qd, solver.torques(q, qd, qdd), measured
-
-
-def _effort_limits(chain: Sequence[DescribedJoint]) -> Floats:
-    """(n,) N m (prismatic N); infinite where none is stated."""
-    return np.array([joint.limits.get("effort", np.inf) for joint in chain])
 
 
 def _result(
-    described: FastModel,
-    evaluations: Sequence[Evaluation],
     fitter: ArmFitter,
-    cut: Sequence[Block],
+    described: FastModel,
     chain: Sequence[DescribedJoint],
-    *,
+    evaluations: Sequence[Evaluation],
+    groups: Sequence[Sequence[Block]],
     held_out: Sequence[HeldOutBlock],
-    chosen: Chosen,
+    *,
     by_day: bool,
 ) -> Identification:
-    first, fit = evaluations[0], chosen.fit
-    robot = first.robot
-    links = tuple(joint.child for joint in chain)
-    later = [block.later(chosen.delay) for block in moving(cut)]
-    errors = [errors_of(fitter, fit, block) for block in later]
-    independent = independent_samples(errors)
-    samples = sum(map(len, errors))
-    known = knowledge(
-        fitter,
-        fit,
-        later,
-        law=chosen.law,
-        prior_strength=chosen.prior_strength,
-        worth=float(independent.mean() / samples),
-    )
+    """The model of all blocks, and what the data tell of it."""
+    first, links = evaluations[0], tuple(joint.child for joint in chain)
+    blocks = [block for group in groups for block in group]
+    chosen = choose(fitter, blocks)
+    later = chosen.blocks
+    errors = [errors_of(fitter, chosen.fit, block) for block in later]
+    independent, samples = independent_samples(errors), sum(map(len, errors))
+    known = knowledge(fitter, chosen.fit, later, chosen.options)
     gravity: tuple[Finding, ...] = ()
     if any(e.effort.meaning == "torque_without_gravity" for e in evaluations):
         weights = weights_of_links(described, fitter.prior, later)
-        options = _core.ArmFitOptions(chosen.law, prior_strength=chosen.prior_strength)
-        known = replace(known, assumed=assumed(fitter, fit, later, options, weights))
-        gravity = (gravity_finding(robot, weights, first.units),)
-    factor = np.hstack([factor_of(fitter, fit, later, known, law=chosen.law), known.assumed])
+        known = replace(known, assumed=assumed(fitter, chosen.fit, later, chosen.options, weights))
+        gravity = (gravity_finding(first.robot, weights, first.units),)
+    factor = factor_of(fitter, chosen.fit, later, known, law=chosen.law)
     currents = first.effort.meaning == "current"
-    model = _model(fitter, chosen, cut, np.array(first.effort.drive_gains) if currents else None)
+    gains = np.array(first.effort.drive_gains) if currents else None
+    model = _model(fitter, chosen, blocks, gains)
     levels: tuple[Level, ...] = ()
     if by_day:
-        names = list(dict.fromkeys(block.recording for block in held_out))
-        levels = levels_of(names, held_out, fitted_solver(described, model))
-    held, coverage = _held_out_errors(held_out)
+        solver = solver_of_model(described.identified(model))
+        recordings = dict.fromkeys(block.recording for block in held_out)
+        levels = tuple(level_of(recording, held_out, solver) for recording in recordings)
+    measured, band = valid_samples(held_out, "measured", "band")
+    unseen = {c: measured - valid_samples(held_out, c)[0] for c in held_out[0].computed}
+    rmse = {column: np.sqrt((error**2).mean(0)) for column, error in unseen.items()}
+    delays = np.array([block.delay for block in held_out])
     return Identification(
-        robot=robot,
+        robot=first.robot,
         recordings=tuple(e.bag for e in evaluations),
         joints=fitter.joint_names,
         units=first.units,
@@ -389,48 +350,22 @@ def _result(
         effort=first.effort.summary,
         samples=samples,
         duration=float(sum(e.time[-1] for e in evaluations)),
-        held_out=held,
-        coverage=coverage,
+        held_out=rmse,
+        coverage=(np.abs(unseen["identified"]) <= band).mean(0),
         blocks=tuple(held_out),
         noise=np.sqrt((np.concatenate(errors) ** 2).mean(0)),
         independent=independent,
         choices=chosen.choices,
         intervals=intervals(known, described, first.units),
-        prior_decided=prior_decided(known, fitter.prior, links),
+        prior_decided=prior_decided(known, float(independent.mean() / samples), links),
         factor=factor,
-        band=with_levels(band_of(chosen, factor, cut, _effort_limits(chain)), levels),
+        band=with_levels(band_of(chosen, factor, blocks, _effort_limits(chain)), levels),
         levels=levels,
         findings=(
             *gravity,
-            *findings_of_errors(fitter, links, held, first.units),
-            *motion_findings(
-                fitter, chosen.delay, np.array([b.delay for b in held_out]), later, independent
-            ),
+            *findings_of_errors(fitter, links, rmse, first.units),
+            *motion_findings(fitter, chosen.delay, delays, later, independent),
         ),
         # but for the cause of the present model's errors, which the fit removes
         notes=tuple(note for e in evaluations for note in e.notes),
     )
-
-
-def _model(
-    fitter: ArmFitter, chosen: Chosen, cut: Sequence[Block], drive_gains: Floats | None
-) -> IdentifiedModel:
-    fit = chosen.fit
-    used = [(b.q[b.counts], b.qd[b.counts], b.qdd[b.counts]) for b in cut]
-    seen = [np.concatenate(values) for values in zip(*used, strict=True)]
-    return IdentifiedModel(
-        parameters=fit.parameters,
-        rotor_inertia=fit.rotor_inertia,
-        friction=tuple(fit.friction),
-        drive_gains=drive_gains,
-        torque_deviation=chosen.band,
-        seen=np.stack([np.stack([s.min(0), s.max(0)], axis=1) for s in seen]),
-        coupling=fitter.coupling,
-    )
-
-
-def _held_out_errors(blocks: Sequence[HeldOutBlock]) -> tuple[dict[str, Floats], Floats]:
-    """RMSE (n,) of each column over the valid samples, and the share within the band."""
-    measured, identified, band = valid_samples(blocks, "measured", "identified", "band")
-    within = np.abs(measured - identified) <= band
-    return root_mean_squares([block.errors for block in blocks]), within.mean(0)

@@ -13,16 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics import _core
-from inverse_dynamics.identification.blocks import together
 from inverse_dynamics.identification.result import Interval, PriorDecided
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics._core import ArmFit, ArmFitOptions, ArmFitter
+    from inverse_dynamics._core import ArmFit, ArmFitOptions, ArmFitter, FastModel
     from inverse_dynamics.arrays import Floats
-    from inverse_dynamics.identification.blocks import Block, FitBlock
+    from inverse_dynamics.identification.blocks import Block
 
 PARAMETERS = ("m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz")
 UNITS = ("kg", *["kg m"] * 3, *["kg m^2"] * 6)
@@ -71,7 +69,6 @@ class Knowledge:
     data: Floats  # (m, m), of samples as if they were independent
     prior: Floats  # (m, m)
     scores: Floats  # (clusters, m)
-    worth: float  # effective independent samples per sample, mean over the joints
     # (m, K) errors of the unknowns if an assumption is wrong by one standard deviation
     assumed: Floats
 
@@ -98,11 +95,13 @@ class Knowledge:
         error = moved @ self.prior[rigid, rigid] @ moved / max(float(told), 1.0)
         return max(float(error), 1.0)
 
-    @property
-    def shares(self) -> Floats:
-        """(m,) of the information on each unknown, what comes from the data: 0 to 1."""
+    def shares(self, worth: float) -> Floats:
+        """(m,) of the information on each unknown, what comes from the data: 0 to 1.
+
+        worth: effective independent samples per sample, mean over the joints.
+        """
         prior = self.prior / self._prior_error()
-        posterior = np.diag(_inverse(self.worth * self.data + prior)) + (self.assumed**2).sum(1)
+        posterior = np.diag(_inverse(worth * self.data + prior)) + (self.assumed**2).sum(1)
         shares: Floats = 1 - posterior / np.diag(_inverse(prior))
         return shares
 
@@ -119,23 +118,18 @@ def _inverse(matrix: Floats) -> Floats:
 
 
 def knowledge(
-    fitter: ArmFitter,
-    fit: ArmFit,
-    blocks: Sequence[Block],
-    *,
-    law: str,
-    prior_strength: float,
-    worth: float,
+    fitter: ArmFitter, fit: ArmFit, blocks: Sequence[Block], options: ArmFitOptions
 ) -> Knowledge:
-    """That of a fit to blocks."""
-    data, prior, scores = fitter.information(
-        fit,
-        fitter.data(_clusters(blocks)),
-        _core.ArmFitOptions(law, prior_strength=prior_strength),
-    )
-    values = _values(fit, law)
+    """That of a fit to blocks, which are cut further, to about ten clusters."""
+    each = max(1, round(_CLUSTERS / len(blocks)))
+    clusters = []
+    for block in blocks:
+        pieces = [np.array_split(values, each) for values in block.fitted]
+        clusters += list(zip(*pieces, strict=True))
+    data, prior, scores = fitter.information(fit, fitter.data(clusters), options)
+    values = _values(fit, options.law)
     none = np.zeros((len(values), 0))
-    return Knowledge(fitter.joint_names, values, fitter.prior, data, prior, scores, worth, none)
+    return Knowledge(fitter.joint_names, values, fitter.prior, data, prior, scores, none)
 
 
 def _values(fit: ArmFit, law: str) -> Floats:
@@ -152,7 +146,7 @@ def _values(fit: ArmFit, law: str) -> Floats:
 
 
 def weights_of_links(
-    model: _core.FastModel, links: Floats, blocks: Sequence[Block]
+    model: FastModel, links: Floats, blocks: Sequence[Block]
 ) -> list[list[Floats]]:
     """Gravity torques of DOUBT of each link's mass, (N, n) of each block. links: (n, 10)."""
 
@@ -182,19 +176,9 @@ def assumed(
     )
     for change in changes:
         moved = [replace(b, tau=b.tau + torques) for b, torques in zip(blocks, change, strict=True)]
-        again = fitter.fit(fitter.data(together(moved)), options, fit)
+        again = fitter.fit(fitter.data([block.fitted for block in moved]), options, fit)
         steps.append((_values(again, options.law) - values) / unit)
     return np.array(steps).T
-
-
-def _clusters(blocks: Sequence[Block]) -> list[FitBlock]:
-    """Blocks cut further, to about ten."""
-    parts = max(1, round(_CLUSTERS / len(blocks)))
-    found = []
-    for block in blocks:
-        pieces = [np.array_split(values, parts) for values in block.fitted]
-        found += [(q, qd, qdd, tau) for q, qd, qdd, tau in zip(*pieces, strict=True)]
-    return found
 
 
 def independent_samples(errors: Sequence[Floats]) -> Floats:
@@ -214,9 +198,7 @@ def independent_samples(errors: Sequence[Floats]) -> Floats:
     return total
 
 
-def intervals(
-    known: Knowledge, model: _core.FastModel, units: Sequence[str]
-) -> tuple[Interval, ...]:
+def intervals(known: Knowledge, model: FastModel, units: Sequence[str]) -> tuple[Interval, ...]:
     """95 % intervals of values of friction, rotor inertias, and identifiable inertial combinations.
 
     units: of each joint's torque, N m or N.
@@ -242,7 +224,7 @@ def intervals(
     return tuple(found)
 
 
-def _combinations(model: _core.FastModel, joints: Sequence[str]) -> list[tuple[Floats, int, str]]:
+def _combinations(model: FastModel, joints: Sequence[str]) -> list[tuple[Floats, int, str]]:
     """Inertial combinations that torques depend on: coefficients (10 n,), and their names.
 
     Parameter k of each, the last that is independent, has coefficient one; the others are those
@@ -285,19 +267,17 @@ def _name(coefficients: Floats, k: int, joints: Sequence[str]) -> str:
     return f"{one(k)} {' '.join(terms)}{more}"
 
 
-def prior_decided(
-    known: Knowledge, prior: Floats, links: Sequence[str]
-) -> tuple[PriorDecided, ...]:
-    """Numbers of links of whose information less than half comes from the data. prior: (n, 10)."""
-    shares = known.shares
+def prior_decided(known: Knowledge, worth: float, links: Sequence[str]) -> tuple[PriorDecided, ...]:
+    """Numbers of links of whose information less than half comes from the data. worth: as shares() takes it."""
+    shares, described = known.shares(worth), known.described.ravel()
     return tuple(
         PriorDecided(
             link=links[i // 10],
             parameter=PARAMETERS[i % 10],
-            prior=float(prior.ravel()[i]),
+            prior=float(described[i]),
             value=float(known.values[i]),
             share=float(np.clip(shares[i], 0, 1)),
         )
-        for i in range(prior.size)
+        for i in range(described.size)
         if shares[i] < _KNOWN
     )

@@ -12,8 +12,7 @@ import numpy as np
 from inverse_dynamics.evaluation.evaluation import joint_errors
 from inverse_dynamics.identification.knowledge import PARAMETERS, UNITS
 from inverse_dynamics.identification.result import COLUMNS
-from inverse_dynamics.identification.summary import choices_told
-from inverse_dynamics.identification.tables import held_out_table, hold_out_table
+from inverse_dynamics.identification.tables import choices_told, held_out_table
 from inverse_dynamics.show.page import (
     ReportRun,
     ReportSummary,
@@ -88,7 +87,7 @@ def _summary(found: Identification) -> ReportSummary:
         "chosen on them either."
     )
     tests = [
-        hold_out_table(found, test, f"Error on {test.recording.name}", "; ".join(test.notes))
+        held_out_table(found, f"Error on {test.recording.name}", "; ".join(test.notes), test=test)
         for test in found.hold_out
     ]
     known = (_friction(found), _intervals(found), _prior(found))

@@ -20,10 +20,10 @@ import numpy as np
 
 from inverse_dynamics._core import FastModel, Solver
 from inverse_dynamics.errors import EvaluationError, RobotError
+from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.show.result import ResultFiles
-from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -221,13 +221,13 @@ class Identification(ResultFiles):
 
     def numbers(self) -> dict[str, Any]:
         """Everything but the samples, for JSON."""
-        from inverse_dynamics.identification.files import identification_numbers
+        from inverse_dynamics.identification.tables import identification_numbers
 
         return identification_numbers(self)
 
     def lines(self) -> Iterable[Line]:
         """What the screen shows."""
-        from inverse_dynamics.identification.summary import identification_lines
+        from inverse_dynamics.identification.tables import identification_lines
 
         return identification_lines(self)
 
@@ -243,9 +243,17 @@ class Identification(ResultFiles):
 
     def texts(self, files: Sequence[Path]) -> tuple[str, ...]:
         """Run configuration, model, what it may be wrong by, all numbers, page."""
-        from inverse_dynamics.identification.files import identification_texts
+        from inverse_dynamics.identification import files as text_of
+        from inverse_dynamics.identification.uncertainty import uncertainty_text
 
-        return identification_texts(self, files)
+        model = text_of.model_file_text(self, files[1].stem)
+        return (
+            text_of.run_configuration_text(self, files),
+            model,
+            uncertainty_text(self, model),
+            json_text(self.numbers()),
+            self.page(),
+        )
 
     def test(self, fresh: Sequence[Path]) -> None:
         """Read the model: the solver's own reader computes the rows of checks, or raises SolverError."""
@@ -257,7 +265,7 @@ class Identification(ResultFiles):
 
     def solver(self) -> Solver:
         """The identified model as a solver, as `Solver(model=...)` of its model file is."""
-        return fitted_solver(_described(self), self.model)
+        return solver_of_model(identified_model(self))
 
     @property
     def offsets(self) -> Floats:
@@ -273,30 +281,20 @@ class Identification(ResultFiles):
         return np.array([law.get(key, 0.0) for law in self.model.friction])
 
 
-def model_file_text(found: Identification, name: str) -> str:
-    """The model as a model file (docs/model_file.md), with every digit. Raises RobotError, SolverError."""
-    return identified_model(found).file_text(
-        name=name, source=_source(found), validity=_validity(found)
-    )
-
-
 def identified_model(found: Identification) -> FastModel:
     """The description's chain with the identified links, rotors and friction. Raises RobotError."""
-    return _described(found).identified(found.model)
-
-
-def _described(found: Identification) -> FastModel:
     robot = found.robot
-    return FastModel.from_urdf(
+    described = FastModel.from_urdf(
         read_description(urdf_of(found)), root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
+    return described.identified(found.model)
 
 
-def fitted_solver(described: FastModel, model: IdentifiedModel) -> Solver:
-    """The solver of a model of the description's chain."""
+def solver_of_model(identified: FastModel) -> Solver:
+    """The model as a solver."""
     with TemporaryDirectory() as directory:
         file = Path(directory) / "model.yaml"
-        text = described.identified(model).file_text(name="identified", source="", validity="")
+        text = identified.file_text(name="identified", source="", validity="")
         file.write_text(text, encoding="utf-8")
         return Solver(RIGID_BODY, model=f"{file}")
 
@@ -308,28 +306,3 @@ def urdf_of(found: Identification) -> Path:
             f"robot {found.robot.name}: expected a description, whose geometry the model has; give --urdf"
         )
     return found.robot.urdf
-
-
-def _source(found: Identification) -> str:
-    names = listed([path.name for path in found.recordings])
-    return (
-        f"`ids identify` on {counted(len(found.recordings), 'recording')} ({names}): {found.samples} samples, "
-        f"{found.duration:.1f} s; prior and geometry: {urdf_of(found).name}; friction law "
-        f"{found.law}, prior strength {found.prior_strength:g}, torque delay {1e3 * found.delay:.1f} "
-        f"ms; {found.filter}; efforts: {found.effort}"
-    )
-
-
-def _validity(found: Identification) -> str:
-    error = ", ".join(
-        f"{joint} {value:.3g} {unit}"
-        for joint, value, unit in zip(
-            found.joints, found.held_out["identified"], found.units, strict=True
-        )
-    )
-    return (
-        "All links are physically consistent, so H is positive definite. Root mean square error on "
-        f"data that were held out: {error}. Within the ranges stated as `seen`, of the robot, load and "
-        "temperature of the recordings: friction and offset differ on another day. Masses of single "
-        "links are mostly those of the description: torques don't determine them."
-    )

@@ -13,19 +13,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics import _core
-from inverse_dynamics.contacts.contacts import LEAST_GAIN
 from inverse_dynamics.evaluation.bands import LEVEL, SHARE, TorqueBand
-from inverse_dynamics.identification.blocks import together
 from inverse_dynamics.identification.cross_validation import errors_of
 from inverse_dynamics.identification.result import Level, valid_samples
 from inverse_dynamics.outputs.plain import plain
-from inverse_dynamics.robots.model_errors import SCHEMA, read_model_errors, sha256
+from inverse_dynamics.robots.model_errors import LEAST_GAIN, SCHEMA, sha256
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
+    from collections.abc import Iterable, Sequence
 
-    from inverse_dynamics._core import ArmFit, ArmFitter, ArmUncertainty, Solver
+    from inverse_dynamics._core import ArmFit, ArmFitter, Solver
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.blocks import Block
     from inverse_dynamics.identification.cross_validation import Chosen
@@ -48,12 +45,17 @@ def factor_of(
 ) -> Floats:
     """(m, K): independent deviations of the m unknowns of a fit to blocks.
 
-    Those come first that change torques most; those that change none are left out.
+    Those come first that change torques most; those that change none are left out. Last are those of known.assumed.
     """
     errors = np.concatenate([errors_of(fitter, fit, block) for block in blocks])
     times = [block.time[block.counts] for block in blocks]
-    noise = _core.residual_noise(_in_a_row(times), errors - errors.mean(axis=0))
-    data = fitter.whitened_information(fit, fitter.data(together(blocks), times=times), law, noise)
+    rows, end = [], 0.0
+    for time in times:  # one after another, those of several recordings too
+        rows.append(time - time[0] + end)
+        end = float(rows[-1][-1]) + _APART
+    noise = _core.residual_noise(np.concatenate(rows), errors - errors.mean(axis=0))
+    samples = fitter.data([block.fitted for block in blocks], times=times)
+    data = fitter.whitened_information(fit, samples, law, noise)
     information = data + known.prior
     scale = 1 / np.sqrt(np.diag(information))
     scaled = information * np.outer(scale, scale) + _RIDGE * np.eye(len(scale))
@@ -61,8 +63,7 @@ def factor_of(
     any_factor = scale[:, None] * np.linalg.inv(root).T
     variances, turn = np.linalg.eigh(any_factor.T @ known.data @ any_factor)
     kept = np.flatnonzero(variances > _LEAST * len(errors))[::-1]
-    factor: Floats = any_factor @ turn[:, kept]
-    return factor
+    return np.hstack([any_factor @ turn[:, kept], known.assumed])
 
 
 def band_of(
@@ -72,7 +73,8 @@ def band_of(
 
     limits: (n,) of efforts, infinite where they aren't known; None: a band for the same day.
     """
-    _, qd, _, tau = (np.abs(np.concatenate(v)) for v in zip(*together(blocks), strict=True))
+    samples = [block.fitted for block in blocks]
+    _, qd, _, tau = (np.abs(np.concatenate(v)) for v in zip(*samples, strict=True))
     friction = chosen.fit.friction
     none, greatest = np.zeros(len(friction)), np.quantile(tau, _GREATEST, axis=0)
     return TorqueBand(
@@ -92,19 +94,13 @@ def usual_level(greatest: Floats, limits: Floats) -> Floats:
     return np.asarray(LEVEL * np.minimum(usual, _MOST_RANGE * greatest))
 
 
-def levels_of(
-    recordings: Sequence[str], blocks: Sequence[HeldOutBlock], solver: Solver
-) -> tuple[Level, ...]:
-    """Of each recording that was held out as a whole. solver: of the final model."""
-    return tuple(
-        _level(recording, [b for b in blocks if b.recording == recording], solver)
-        for recording in recordings
-    )
+def level_of(recording: str, blocks: Sequence[HeldOutBlock], solver: Solver) -> Level:
+    """By which offset and share of friction torques differ from those that other recordings predict.
 
-
-def _level(recording: str, blocks: Sequence[HeldOutBlock], solver: Solver) -> Level:
-    """By which offset and share of friction torques differ from those that other recordings predict."""
-    q, qd, measured, identified = valid_samples(blocks, "q", "qd", "measured", "identified")
+    blocks: of recordings that were held out as a whole. solver: of the final model.
+    """
+    of_recording = [block for block in blocks if block.recording == recording]
+    q, qd, measured, identified = valid_samples(of_recording, "q", "qd", "measured", "identified")
     friction = solver.friction_vector(qd, q=q) - solver.friction_vector(np.zeros_like(qd), q=q)
     values = []
     for f, v, e in zip(friction.T, np.abs(qd).T, (measured - identified).T, strict=True):
@@ -132,15 +128,6 @@ def with_levels(band: TorqueBand, levels: Sequence[Level]) -> TorqueBand:
     )
 
 
-def _in_a_row(times: Sequence[Floats]) -> Floats:
-    """One time for all blocks, those of several recordings too."""
-    rows, end = [], 0.0
-    for time in times:
-        rows.append(time - time[0] + end)
-        end = float(rows[-1][-1]) + _APART
-    return np.concatenate(rows)
-
-
 def uncertainty_text(found: Identification, model_text: str) -> str:
     """The text of that file, for the text of the model."""
     content = {
@@ -150,7 +137,7 @@ def uncertainty_text(found: Identification, model_text: str) -> str:
         "deviations": _rows(found.factor.T, _DIGITS),
         "held_out": _held_out(found),
         "band": {
-            key: [float(f"{x:.{_DIGITS}g}") for x in getattr(found.band, key)]
+            key: _rows([getattr(found.band, key)], _DIGITS)[0]
             for key in ("noise", "level", "share")
         },
     }
@@ -165,30 +152,15 @@ def _held_out(found: Identification) -> dict[str, Any]:
     """
     period = float(np.median(np.concatenate([np.diff(b.time[b.counts]) for b in found.blocks])))
     each = max(1, round(1 / (LEAST_GAIN * period)))
-    means = [_means(block.errors["identified"], each) for block in found.blocks]
+    means = []
+    for block in found.blocks:
+        errors = block.errors["identified"]
+        count = len(errors) // each
+        means.append(errors[: count * each].reshape(count, each, errors.shape[1]).mean(axis=1))
     rows = np.concatenate(means)
     step = 1 + len(rows) // _MOST_ROWS
     return {"gain": LEAST_GAIN, "period": step * each * period, "torques": _rows(rows[::step], 4)}
 
 
-def _means(values: Floats, each: int) -> Floats:
-    """Of so many rows each."""
-    count = len(values) // each
-    means: Floats = values[: count * each].reshape(count, each, values.shape[1]).mean(axis=1)
-    return means
-
-
-def _rows(values: Floats, digits: int) -> list[list[float]]:
+def _rows(values: Iterable[Floats], digits: int) -> list[list[float]]:
     return [[float(f"{x:.{digits}g}") for x in row] for row in values]
-
-
-def read_uncertainty(model: Path) -> tuple[ArmUncertainty | None, str]:
-    """Uncertainty of the model; or None, and why.
-
-    Raises RobotError: a file that isn't one of `ids identify`.
-    """
-    content, why = read_model_errors(model)
-    if content is None:
-        return None, why
-    factor = np.array(content["deviations"], dtype=float).T
-    return _core.ArmUncertainty(content["friction"], factor), ""

@@ -26,13 +26,13 @@ from inverse_dynamics.evaluation.evaluation import (
     torques_with_gravity,
 )
 from inverse_dynamics.evaluation.run import RunOptions
-from inverse_dynamics.identification.uncertainty import read_uncertainty
 from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.payload.figure import payload_figure
 from inverse_dynamics.payload.files import yaml_text
 from inverse_dynamics.payload.page import payload_page
 from inverse_dynamics.payload.tables import payload_lines, payload_numbers
 from inverse_dynamics.progress import no_progress
+from inverse_dynamics.robots.model_errors import read_uncertainty
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.robots.solvers import brings_own_model, solver_of
 from inverse_dynamics.show.result import ResultFiles

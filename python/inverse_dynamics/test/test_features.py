@@ -26,11 +26,9 @@ ALLOWED = {
     ("demo", "simulation"): "recordings of the simulated robots",
     ("evaluation", "diagnosis"): "meaning of efforts, and causes of errors",
     ("excitation", "simulation"): "the robot whose motion is chosen",
-    ("identification", "contacts"): "what a model leaves, as an observer has it",
     ("identification", "diagnosis"): "recordings that no model is identified from",
     ("identification", "payload"): "the former name of payload.payload",
     ("results", "identification"): "the former name of identification.files",
-    ("payload", "identification"): "what the model of the arm may be wrong by",
     ("robots", "simulation"): "the verb checks `simulation:` of a run configuration",
     ("simulation", "excitation"): "`ids simulate --optimise`",
 }

@@ -17,10 +17,10 @@ from inverse_dynamics.errors import InvalidParameterError, RobotError
 from inverse_dynamics.evaluation import bands
 from inverse_dynamics.identification.cross_validation import noise_in_motion
 from inverse_dynamics.identification.files import write_identification
-from inverse_dynamics.identification.uncertainty import read_uncertainty, usual_level
+from inverse_dynamics.identification.uncertainty import usual_level
 from inverse_dynamics.payload.payload import estimate_payload
 from inverse_dynamics.recordings.joint_log import JointLog
-from inverse_dynamics.robots.model_errors import model_errors_file
+from inverse_dynamics.robots.model_errors import model_errors_file, read_uncertainty
 from inverse_dynamics.robots.robots import RIGID_BODY
 
 SIZE = 16 * len(JOINTS)  # unknowns of the law `step`

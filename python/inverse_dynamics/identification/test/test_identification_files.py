@@ -20,10 +20,10 @@ from inverse_dynamics._core import RobotDescription
 from inverse_dynamics.errors import RobotError, SolverError
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.identification import files as identifications
-from inverse_dynamics.identification.files import write_identification
+from inverse_dynamics.identification.files import model_file_text, write_identification
 from inverse_dynamics.identification.hold_out import hold_out
 from inverse_dynamics.identification.refusals import check_result
-from inverse_dynamics.identification.result import IdentificationError, model_file_text
+from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.identification.universal_robots import friction_request
 from inverse_dynamics.outputs.plain import plain
 from inverse_dynamics.recordings.joint_log import JointLog

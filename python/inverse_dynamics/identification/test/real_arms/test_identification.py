@@ -23,7 +23,7 @@ from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.findings import motion_findings
 from inverse_dynamics.identification.knowledge import independent_samples, intervals, knowledge
 from inverse_dynamics.identification.result import COLUMNS, LAWS, IdentificationError
-from inverse_dynamics.identification.summary import delay_told
+from inverse_dynamics.identification.tables import delay_told
 from inverse_dynamics.identification.temperature import at_temperature
 from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.robots.descriptions import read_description
@@ -249,32 +249,34 @@ def test_a_known_robot_comes_back(known, found):
     assert "present" not in found.held_out
 
 
-def delay_where(monkeypatch, noise_of):
+def delay_where(noise_of):
     """What is found where the noise depends on the delay like this."""
     fitter = SimpleNamespace(
         data=lambda delays: delays,
         fit=lambda delays, *_: SimpleNamespace(noise=noise_of(np.array(delays))),
     )
-    monkeypatch.setattr(cross_validation, "_period", lambda _: 0.008)
-    monkeypatch.setattr(cross_validation, "_later", lambda _, delay, __: [delay])
-    monkeypatch.setattr(cross_validation, "together", lambda delays: delays)
-    return cross_validation._delay(fitter, [], 1)[0]
+    block = SimpleNamespace(
+        instants=np.array([0.0, 0.008]),
+        used=np.array([True, True]),
+        later=lambda delay, _: SimpleNamespace(fitted=delay),
+    )
+    return cross_validation._delay(fitter, [block], 1)[0]
 
 
 @pytest.mark.parametrize(("best", "found"), [(3e-5, 0.0), (0.003, 0.003), (-0.003, -0.003)])
-def test_a_delay_of_less_than_a_tenth_of_a_millisecond_counts_as_none(monkeypatch, best, found):
-    delay = delay_where(monkeypatch, lambda delays: np.exp((delays - best) ** 2))
+def test_a_delay_of_less_than_a_tenth_of_a_millisecond_counts_as_none(best, found):
+    delay = delay_where(lambda delays: np.exp((delays - best) ** 2))
     assert delay == pytest.approx(found, abs=1e-9)
 
 
 @pytest.mark.parametrize("late", [0.02, 0.03, -0.05])
-def test_a_delay_of_several_steps_is_found(monkeypatch, late):
-    delay = delay_where(monkeypatch, lambda delays: np.hypot(1e-4, delays - late))
+def test_a_delay_of_several_steps_is_found(late):
+    delay = delay_where(lambda delays: np.hypot(1e-4, delays - late))
     assert delay == pytest.approx(late, abs=0.002)
 
 
-def test_without_a_least_noise_there_is_no_delay(monkeypatch):
-    assert delay_where(monkeypatch, lambda delays: 1.0 - delays) == 0.0
+def test_without_a_least_noise_there_is_no_delay():
+    assert delay_where(lambda delays: 1.0 - delays) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -375,7 +377,7 @@ def test_intervals_of_a_prismatic_joint_are_in_newtons_and_metres():
     blocks = blocks_of_arrays(q, qd, qdd, tau)
     options = _core.ArmFitOptions("stribeck", prior_strength=10)
     fit = fitter.fit(fitter.data([b.fitted for b in blocks]), options)
-    known = knowledge(fitter, fit, blocks, law="stribeck", prior_strength=10, worth=1.0)
+    known = knowledge(fitter, fit, blocks, options)
     units = {i.name: i.unit for i in intervals(known, model, ("N", "N m"))}
     of = {key: (units[f"slide {key}"], units[f"hinge {key}"]) for key in OWN_UNITS}
     assert of == OWN_UNITS
