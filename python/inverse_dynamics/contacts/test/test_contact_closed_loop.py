@@ -27,7 +27,6 @@ from simulation_arms import CHAINS, urdf_of
 
 from inverse_dynamics import Solver
 from inverse_dynamics.contact import (
-    AccelerationResidual,
     ContactDetector,
     ContactThresholds,
     EstimatorOptions,
@@ -179,14 +178,6 @@ def test_no_false_alarm_in_minutes_of_random_motion(bench: Bench, seeds: range) 
         greatest = np.maximum(greatest, np.abs(bench.estimate(recorded)[0]).max(axis=0))
     with np.printoptions(precision=2, suppress=True):
         print(f"{bench.name}: thresholds {bench.thresholds.torques}, greatest {greatest}")
-
-
-def test_both_estimators_find_the_same(bench: Bench) -> None:
-    recorded = bench.pushed(0, True)
-    momentum, valid = bench.estimate(recorded)
-    acceleration, also_valid = bench.estimate(recorded, AccelerationResidual)
-    assert (valid == also_valid).all()
-    assert np.abs(momentum - acceleration).max() < 0.01
 
 
 @SEEDS

@@ -12,13 +12,12 @@ import pytest
 from example_recordings import (
     motion,
     points_of_motion,
-    recording,
     table_of,
     trajectory,
     write_table,
     write_trajectories,
 )
-from example_robots import JOINTS, RIGID_BODY, URDF
+from example_robots import JOINTS
 from pages import (
     CHROMIUM,
     FLAGS,
@@ -32,7 +31,7 @@ from pages import (
     wait_until,
 )
 
-from inverse_dynamics import Solver, cli, evaluate, read_evaluation, write_evaluation
+from inverse_dynamics import cli, evaluate, read_evaluation, write_evaluation
 from inverse_dynamics._core import Effort, Verdict
 from inverse_dynamics.comparison.comparison import compare
 from inverse_dynamics.errors import UserError
@@ -47,9 +46,7 @@ from inverse_dynamics.show.tables import ReportTable
 
 
 @pytest.fixture(scope="module")
-def evaluation(tmp_path_factory):
-    bag = tmp_path_factory.mktemp("recording") / "motion"
-    recording(bag, Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0"))
+def evaluation(bag):
     return evaluate(bag, "ur10_simulated", accelerations="low-pass", cutoff=2.0)
 
 
@@ -171,12 +168,8 @@ def test_what_efforts_mean_and_how_sure_that_is_stands_among_the_assumptions(eva
     assert verdict.summary in page
 
 
-def test_tables_and_trajectories_are_shown_as_recordings_are(tmp_path):
-    q, qd, qdd, _ = motion()
-    torques = Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0").torques(
-        q, qd, qdd
-    )
-    write_table(tmp_path / "motion.csv", table_of(torques, qdd))
+def test_tables_and_trajectories_are_shown_as_recordings_are(tmp_path, torques):
+    write_table(tmp_path / "motion.csv", table_of(torques, motion()[2]))
     plan = trajectory(JOINTS, points_of_motion(effort=torques))
     write_trajectories(tmp_path / "plan", [plan])
     for name, topic in (("motion.csv", ""), ("plan", ", /planned")):
