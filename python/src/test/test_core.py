@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 import copy
 import json
-import threading
 
 import numpy as np
 import pytest
@@ -63,24 +62,6 @@ def test_friction_can_be_left_out(ur10):
         ur10.torques(*motion) - without.torques(*motion), expected["friction"], atol=TOLERANCE
     )
     assert not without.friction_vector(motion[1]).any()
-
-
-def test_threads_compute_at_once_and_the_same(ur10):
-    rng = np.random.default_rng(0)
-    q, qd, qdd = rng.normal(size=(3, 2000, 6))
-    expected = ur10.torques(q, qd, qdd)
-    results = [None] * 4
-
-    def compute(i):
-        results[i] = ur10.torques(q, qd, qdd)
-
-    threads = [threading.Thread(target=compute, args=(i,)) for i in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    for result in results:
-        np.testing.assert_array_equal(result, expected)
 
 
 # Errors: of the C++ exceptions' kinds, with their texts.
@@ -170,28 +151,6 @@ def test_low_pass_is_that_of_scipy(order, cutoff, padding):
     result = _core.low_pass(samples, rate, cutoff, order, padding)
     scale = np.abs(samples).max()
     np.testing.assert_allclose(result, expected, rtol=0, atol=1e-9 * scale)
-
-
-def test_metrics_are_those_of_numpy():
-    rng = np.random.default_rng(3)
-    measured, computed = rng.normal(size=(2, 500, 2))
-    measured[:, 1] = 4.0  # never changes
-    mask = rng.random(500) < 0.8
-    for kept in (None, mask):
-        chosen = slice(None) if kept is None else kept
-        m, e = measured[chosen], (computed - measured)[chosen]
-        first, second = _core.joint_errors(("a", "b"), ("N m", "N"), computed, measured, kept)
-        assert (first.joint, second.unit) == ("a", "N")
-        assert first.mae == pytest.approx(np.abs(e[:, 0]).mean(), rel=1e-12)
-        rmse = np.sqrt((e[:, 0] ** 2).mean())
-        assert first.rmse == pytest.approx(rmse, rel=1e-12)
-        assert first.nrmse == pytest.approx(rmse / np.ptp(m[:, 0]), rel=1e-12)
-        assert first.bias == pytest.approx(e[:, 0].mean(), rel=1e-9)
-        deviation = m[:, 0] - m[:, 0].mean()
-        assert first.r2 == pytest.approx(1 - (e[:, 0] ** 2).sum() / (deviation**2).sum(), rel=1e-9)
-        assert first.max_abs == pytest.approx(np.abs(e[:, 0]).max(), rel=1e-12)
-        assert np.isnan(second.nrmse)
-        assert np.isnan(second.r2)
 
 
 def test_samples_that_can_not_be_evaluated_are_an_error():
