@@ -4,7 +4,6 @@ import json
 import re
 import shutil
 import subprocess
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -25,7 +24,6 @@ from pages import (
     child,
     complaints,
     data_of,
-    play_slowly,
     press,
     time_of,
     wait_until,
@@ -339,41 +337,6 @@ def test_a_plot_says_that_it_is_cut(opened):
     low, high, cut = opened.execute_script(ask, None)
     assert low < -200
     assert cut == ""
-
-
-@pytest.mark.parametrize("how", ["click", "space key"])
-def test_playing_moves_the_time_and_the_robot(opened, section, how):
-    play, robot = child(section, ".play"), child(section, ".robot canvas")
-    before = pixels(opened, robot)
-    play_slowly(opened, section)
-
-    def toggle():
-        if how == "click":
-            play.click()
-        else:
-            press(opened, " ")
-
-    toggle()
-    wait_until(lambda: play.text == "Pause", "playing")
-    wait_until(lambda: time_of(section) > 0.2, "time of the player")
-    toggle()
-    wait_until(lambda: play.text == "Play", "pausing")
-    stopped = time_of(section)
-    assert pixels(opened, robot) != before
-    time.sleep(0.2)
-    assert time_of(section) == stopped
-    assert complaints(opened) == []
-
-
-def test_scrubbing_sets_time_and_robot(opened, section):
-    slider, robot = child(section, ".scrub"), child(section, ".robot canvas")
-    before = pixels(opened, robot)
-    opened.execute_script(
-        "arguments[0].value = 3.25; arguments[0].dispatchEvent(new Event('input'));", slider
-    )
-    assert time_of(section) == pytest.approx(3.25, abs=1e-3)
-    assert "3.25 s" in child(section, ".clock").text
-    assert pixels(opened, robot) != before
 
 
 def test_keys_step_zoom_and_reset(opened, section):
