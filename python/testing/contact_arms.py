@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 import yaml
 from example_robots import FRANKA, RIGID_BODY, UR10
-from simulation_arms import CHAINS, robots_package, urdf_of
+from simulation_arms import CHAINS, HOME, robots_package, urdf_of
 
 from inverse_dynamics import FastModel, Solver
 from inverse_dynamics.simulation.model import SimulatedRobot
@@ -36,22 +36,18 @@ PERIOD = 1e-3  # s
 ENCODER_STEP = 2 * np.pi / 2**19  # rad
 TORQUE_NOISE = {"ur10": 0.3, "panda": 0.1}  # N m, standard deviation
 IDENTIFIED = {"ur10": UR10, "panda": FRANKA}
-HOME = {
-    "ur10": np.array([0, -1.6, 1.4, -1.2, -1.4, 0.3]),
-    "panda": np.array([0, -0.5, 0.2, -2.0, 0.1, 1.8, 0.6]),
-}
 RANGE = {
     "ur10": np.array([2.0, 1.0, 1.0, 1.5, 1.5, 2.5]),
     "panda": np.array([1.5, 0.9, 1.2, 0.9, 1.5, 1.2, 1.5]),
 }
-"""How far random motions go from there, either way [rad]."""
+"""How far random motions go from HOME, either way [rad]."""
 
 ELBOW = {"ur10": "forearm_link", "panda": "fer_link4"}
 """Link whose origin is the elbow."""
 
 _MODELS = {"ur10": "ur10_identified", "panda": "franka_inria_identified"}
 _FREQUENCY, _DAMPING = 30.0, 1.0  # rad/s, of computed torque
-_RADIUS, _STIFFNESS = 0.11, 4e5  # m, of ball and link together; N/m
+_RADIUS, _STIFFNESS = 0.11, 4e5  # m, of ball and link together; N/m, so that they touch for 5 ms
 
 
 @dataclass(frozen=True)
@@ -60,9 +56,7 @@ class Recorded:
 
     q: Floats  # (N, n) rad, of the encoders
     effort: Floats  # (N, n) N m, of the torque sensors: what acted during the period
-    force: (
-        Floats  # (N, 3) N, what pushed tip or link during the period, in the axes of the root link
-    )
+    force: Floats  # (N, 3) N on tip or link during the period, in the axes of the root link
 
 
 @dataclass(frozen=True)

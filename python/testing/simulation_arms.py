@@ -6,11 +6,16 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import numpy as np
 from example_robots import RIGID_BODY
 
 from inverse_dynamics.simulation.model import SimulatedRobot
 
 CHAINS = {"ur10": ("base_link", "tool0"), "panda": ("fer_link0", "fer_link8")}
+HOME = {  # rad, away from singularities
+    "ur10": np.array([0, -1.6, 1.4, -1.2, -1.4, 0.3]),
+    "panda": np.array([0, -0.5, 0.2, -2.0, 0.1, 1.8, 0.6]),
+}
 
 
 def robots_package() -> Path:
