@@ -71,6 +71,9 @@ def test_friction_is_in_dynamics_and_the_rest_is_told(found, text):
     sharp = dynamics(urdf_text(with_friction(found, width=1e-6)))
     np.testing.assert_allclose(sharp, [[f["fv"], f["fc"]] for f in found.model.friction], rtol=1e-6)
     assert "Not held here: the width of the step; offsets." in text
+    rotor = "Rotor inertia has no place in a URDF"
+    assert rotor in text
+    assert rotor not in mjcf_text(found)
 
 
 def test_friction_is_the_nearest_to_the_law(found):

@@ -215,7 +215,9 @@ def test_report_verb_writes_the_page(evaluation, tmp_path, capsys, monkeypatch):
     write_evaluation(evaluation, tmp_path / "result", figures=())
     assert cli.main(["report", "result", "--labels", "arm"]) == 0
     assert capsys.readouterr().out == "report.html\n"
-    assert ">arm</h2>" in (tmp_path / "report.html").read_text()
+    html = (tmp_path / "report.html").read_text()
+    assert ">arm</h2>" in html
+    assert "<title>Measured and computed torques: arm</title>" in html
     assert cli.main(["report", "result"]) == 2
     assert "exists already" in capsys.readouterr().err
 
