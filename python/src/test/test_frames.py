@@ -81,27 +81,6 @@ def test_frames_move_as_their_poses(arm):
         expect(J, np.concatenate([(p_up - p_down).T / (2 * step), w]), DIFFERENCES)
 
 
-@pytest.mark.parametrize("arm", ["ur10", "panda"])  # without bodies on joints beside the chain
-def test_gravity_torques_are_the_weights_through_the_jacobians(arm):
-    solver = solver_of(arm)
-    (q,) = states(solver, 1)
-    g, links = np.zeros(len(q)), moving_links(arm)
-    for each in ElementTree.fromstring(urdf_of(arm)).iter("link"):
-        inertial, of_link = each.find("inertial"), links.get(each.get("name"))
-        if inertial is None or of_link is None:
-            continue
-        origin = inertial.find("origin")
-        center = [
-            float(x)
-            for x in (origin.get("xyz", "0 0 0") if origin is not None else "0 0 0").split()
-        ]
-        weight = np.array([0, 0, 9.81 * float(inertial.find("mass").get("value"))])
-        R, _ = of_link.tip_pose(q[: len(of_link.joint_names)])
-        wrench = [*weight, *np.cross(R @ center, weight)]
-        g += solver.jacobian(q, frame=each.get("name")).T @ wrench
-    np.testing.assert_allclose(g, solver.gravity_vector(q), atol=1e-11)
-
-
 def test_the_tip_is_the_usual_frame_and_a_joint_stands_for_its_link():
     solver, engine = solver_of("ur10"), FastModel.from_urdf(urdf_of("ur10"))
     q = states(solver)

@@ -9,9 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from command_line import fails
+from example_recordings import write_motion
 from example_robots import KDL
 from pages import data_of
-from simulation_arms import pendulum
+from simulation_arms import pendulum, write_robot
 
 from inverse_dynamics import Solver, load_robot
 from inverse_dynamics.contact import (
@@ -22,7 +23,6 @@ from inverse_dynamics.contact import (
     MomentumObserver,
     TipWrench,
     VelocitySource,
-    WrenchStatus,
     contact_thresholds,
 )
 from inverse_dynamics.contacts.contacts import find_contacts
@@ -60,25 +60,12 @@ def recording(tmp_path, motion):
 
 @pytest.fixture
 def robot(tmp_path):
-    (tmp_path / "arm.urdf").write_text(pendulum())
-    file = tmp_path / "arm.yaml"
-    file.write_text(
-        f"schema: 1\nname: arm\ndescription: a pendulum\nplugin: {KDL}\nurdf: arm.urdf\n"
-    )
-    return file
+    return write_robot(tmp_path, pendulum(), plugin=KDL)
 
 
 def write_table(path, time, q, effort):
-    rows = np.column_stack([time, q, np.gradient(q[:, 0], time), effort])
-    np.savetxt(
-        path,
-        rows,
-        delimiter=",",
-        fmt="%.9g",
-        header="time,position.swing,velocity.swing,effort.swing",
-        comments="",
-    )
-    return path
+    qd = np.gradient(q[:, 0], time)
+    return write_motion(path, ["swing"], time, position=q, velocity=qd, effort=effort)
 
 
 @pytest.mark.parametrize("kind", [MomentumObserver, AccelerationResidual])
@@ -97,15 +84,6 @@ def test_run_is_update_after_update(solver, motion, kind):
     assert one.update(q[0], effort[0], PERIOD)[1] == EstimateStatus.STARTING
 
 
-def test_statuses_have_texts(solver):
-    observer = MomentumObserver(solver, EstimatorOptions([60.0]))
-    torques, status = observer.update([np.nan], [0.0], PERIOD)
-    assert status == EstimateStatus.STATE_NOT_FINITE
-    assert "isn't finite" in status.text
-    assert torques == [0.0]
-    assert observer.update([0.0, 0.0], [0.0], PERIOD)[1] == EstimateStatus.WRONG_SIZE
-
-
 def test_wrong_shapes_and_options_are_refused(solver, motion):
     time, q, effort = motion
     observer = MomentumObserver(solver, EstimatorOptions([60.0]))
@@ -119,13 +97,6 @@ def test_wrong_shapes_and_options_are_refused(solver, motion):
         TipWrench(solver, [1.0, 1.0])
     with pytest.raises(ValueError, match="quiet: expected an array"):
         contact_thresholds(effort, PERIOD, 1.0, ["a", "b"])
-
-
-def test_the_identified_ur10_has_no_momentum():
-    ur10 = Solver("ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10")
-    with pytest.raises(InvalidParameterError, match="use AccelerationResidual"):
-        MomentumObserver(ur10, EstimatorOptions(np.full(6, 60.0)))
-    AccelerationResidual(ur10, EstimatorOptions(np.full(6, 60.0)))
 
 
 def test_detector_and_thresholds(solver, motion):
@@ -144,17 +115,6 @@ def test_detector_and_thresholds(solver, motion):
     one_by_one = [other.update(*row) for row in zip(torques, periods, strict=True)]
     assert one_by_one == contact.tolist()
     assert other.joint == 0
-
-
-def test_the_wrench_of_a_planar_arm(solver):
-    tip = TipWrench(Solver(KDL, urdf=pendulum(), root="base", tip="arm"), [0.1])
-    wrench, status = tip.update([0.0], [2.0])
-    assert status == WrenchStatus.OK
-    assert tip.unseen == 5
-    assert tip.signal_to_noise.shape == (6,)
-    assert tip.directions.shape == (6, 6)
-    # the tip is on the axis: only the torque about it can be felt
-    assert wrench == pytest.approx([0, 0, 0, 0, 2.0, 0], abs=1e-3)
 
 
 def test_contacts_of_a_recording(recording, robot):
@@ -189,26 +149,13 @@ def test_the_force_of_a_contact_is_its_mean(tmp_path):
     pushed = (time >= 25) & (time < 26)
     effort[pushed] += arm.external_torques(start + motion(time[pushed]), [20.0, 0, 0, 0, 0, 0])
     effort += 0.1 * np.random.default_rng(2).standard_normal(effort.shape)
-    names = list(arm.joint_names)
-    header = ["time"] + [
-        f"{kind}.{n}" for kind in ("position", "velocity", "effort") for n in names
-    ]
-    rows = np.column_stack([time, start + motion(time), motion(time, 1), effort])
-    np.savetxt(
-        tmp_path / "ur10.csv", rows, "%.9g", delimiter=",", header=",".join(header), comments=""
-    )
+    states = {"position": start + motion(time), "velocity": motion(time, 1), "effort": effort}
+    write_motion(tmp_path / "ur10.csv", arm.joint_names, time, **states)
     found = find_contacts(tmp_path / "ur10.csv", robot, quiet=(0.0, 20.0), gain=60.0)
     (contact,) = found.contacts
     assert contact.force == pytest.approx(20.0, rel=0.1)
     assert contact.force_direction == pytest.approx((1, 0, 0), abs=0.15)
     assert contact.greatest_force > 21
-
-
-def test_velocities_may_be_those_of_positions(recording, robot):
-    found = find_contacts(recording, robot, quiet=(0.0, 20.0), gain=60.0, tracking=200.0)
-    (contact,) = found.contacts
-    assert contact.begin == pytest.approx(PUSH[0], abs=5e-3)
-    assert not found.measured_velocities
 
 
 @pytest.mark.parametrize("band", [0.02, 1.0])
@@ -227,6 +174,7 @@ def test_a_gap_interrupts_the_estimate_and_not_the_contact(ids, tmp_path, motion
     kept = ~((time >= 25.4) & (time < 25.6)) & ~((time >= 10.0) & (time < 10.03))
     recording = write_table(tmp_path / "gaps.csv", time[kept], q[kept], effort[kept])
     found = find_contacts(recording, robot, quiet=(0.0, 20.0), gain=60.0, tracking=200.0)
+    assert not found.measured_velocities  # but those of positions
     (contact,) = found.contacts
     assert (contact.begin, contact.end) == pytest.approx((PUSH[0], PUSH[1] + 0.1), abs=0.1)
     (first, second) = found.interruptions
@@ -241,24 +189,6 @@ def test_a_gap_interrupts_the_estimate_and_not_the_contact(ids, tmp_path, motion
     assert "25.00 to 26.01 0.25 swing" in text
     summary = json.loads((tmp_path / "found" / "contacts.json").read_text())
     assert len(summary["interruptions"]) == 2
-
-
-def test_what_is_not_an_estimate_leaves_the_detector_as_it_is(solver):
-    time = PERIOD * np.arange(1000)
-    torques = np.zeros((1000, 1))
-    torques[100:200] = 1.0
-    valid = np.ones(1000, dtype=bool)
-    valid[200:800] = False
-    detector = ContactDetector([0.5], ["swing"])
-    assert np.flatnonzero(detector.run(time, torques))[[0, -1]].tolist() in ([100, 298], [100, 299])
-    detector.reset()
-    contact = detector.run(time, torques, valid)
-    assert np.flatnonzero(contact)[[0, -1]].tolist() in ([100, 898], [100, 899])
-    assert (
-        ContactDetector([0.5], ["swing"]).run(time, torques, valid[::-1][::-1]) == contact
-    ).all()
-    with pytest.raises(ValueError, match=r"valid: expected an array \(1000,\), got \(999,\)"):
-        detector.run(time, torques, valid[1:])
 
 
 def test_thresholds_that_say_little_are_noted(tmp_path, motion, recording, robot):
@@ -431,15 +361,6 @@ def test_no_contact_that_is_none(recordings, tmp_path, name, half):
     assert ratio.min() < 6  # thresholds aren't so high that nothing could ever be one
 
 
-@pytest.mark.parametrize("quiet", [(0.0, 3.0), (10.0, 13.0), (0.0, 20.0)])
-@pytest.mark.parametrize("name", ["ur10_real", "panda_real"])
-def test_a_short_quiet_part_means_high_thresholds(recordings, name, quiet):
-    folder = recordings / f"{name.removesuffix('_real')}_exciting_trajectory"
-    found = find_contacts(folder, name, quiet=quiet)
-    assert found.contacts == ()
-    assert any("rest on few peaks" in note for note in found.notes)
-
-
 def test_a_quiet_part_at_rest_does_not_stand_for_a_motion(tmp_path, solver, robot):
     """Friction that the model lacks shows where the joint moves; then thresholds are raised."""
     rng = np.random.default_rng(0)
@@ -452,27 +373,6 @@ def test_a_quiet_part_at_rest_does_not_stand_for_a_motion(tmp_path, solver, robo
     found = find_contacts(table, robot, quiet=(0.0, 2.9))
     assert found.contacts == ()
     assert any("thresholds are raised, " in note and ": swing (" in note for note in found.notes)
-
-
-def test_what_friction_holds_ends_a_contact(tmp_path, solver, robot):
-    """A push ends within 0.2 s, although 4 N m of it stay; the next one is another contact."""
-    rng = np.random.default_rng(0)
-    time = 0.01 * np.arange(4000)
-    q = np.full((4000, 1), 1.0)
-    pushes = 10.0 * (((time >= 20) & (time < 21)) | ((time >= 25) & (time < 26)))
-    held = 4.0 * (time >= 21)
-    effort = solver.gravity_vector(q) + np.maximum(pushes, held)[:, None]
-    table = write_table(
-        tmp_path / "held.csv",
-        time,
-        q + 1e-6 * rng.standard_normal(q.shape),
-        effort + 0.1 * rng.standard_normal(q.shape),
-    )
-    found = find_contacts(table, robot, quiet=(0.0, 19.0))
-    assert found.thresholds.torques[0] < 2
-    assert [round(contact.begin, 1) for contact in found.contacts] == [20.0, 25.0]
-    for contact, end in zip(found.contacts, (21, 26), strict=True):
-        assert end <= contact.end < end + 0.2
 
 
 def test_jitter_of_stamps_is_no_torque(ids, tmp_path):
@@ -498,13 +398,8 @@ def test_friction_that_turns_round_is_no_contact(tmp_path):
     q, qd, qdd = np.sin(3 * time), 3 * np.cos(3 * time), -9 * np.sin(3 * time)
     effort = Solver(arm.plugin, urdf=urdf, parameters=arm.parameters).torques(q, qd, qdd)
     effort += 0.02 * np.random.default_rng(0).standard_normal(effort.shape)
-    np.savetxt(
-        tmp_path / "turns_round.csv",
-        np.column_stack([time, q, qd, effort]),
-        delimiter=",",
-        header="time,position.swing,velocity.swing,effort.swing",
-        comments="",
-    )
+    states = {"position": q, "velocity": qd, "effort": effort}
+    write_motion(tmp_path / "turns_round.csv", ["swing"], time, **states)
     found = find_contacts(tmp_path / "turns_round.csv", arm, quiet=(0.0, 0.5))
     assert found.contacts == ()
     assert np.abs(found.torques).max() < 0.05

@@ -32,7 +32,6 @@ from inverse_dynamics.diagnosis.rival import PAGE
 from inverse_dynamics.diagnosis.samples import Samples, pieces_of
 from inverse_dynamics.payload.payload import PayloadError, _require_plausible
 from inverse_dynamics.robots.arm import Arm
-from inverse_dynamics.robots.choices import EFFORT_MEANINGS
 from inverse_dynamics.robots.robots import robot_of_description
 
 NOISE = 0.005  # of each joint's range
@@ -479,12 +478,6 @@ def test_given_robots_are_not_accused(recordings, robot):
     assert notes_of(evaluate(bag, robot)) == []
 
 
-@pytest.mark.parametrize("robot", ["ur10_simulated", "panda_simulated"])
-def test_a_description_of_a_real_robot_lacks_nothing_but_friction(recordings, robot):
-    bag = recordings / f"{robot.partition('_')[0]}_exciting_trajectory"
-    assert all("which the model lacks" in note for note in notes_of(evaluate(bag, robot)))
-
-
 @pytest.mark.parametrize(
     ("robot", "joint"), [("ur10_real", 2), ("ur10_real", 1), ("panda_real", 3)]
 )
@@ -497,26 +490,6 @@ def test_a_joint_of_a_real_recording_that_is_turned_is_found(recordings, robot, 
     (note,) = notes_of(evaluate(tmp_path / "turned", robot))
     assert f"torques match if the effort of {name} is reversed" in note
     assert f"{PAGE}#a-joint-is-reversed" in note
-
-
-def efforts_of(name: str, meaning: str, **recording) -> Samples:
-    """A recording whose efforts have a meaning."""
-    samples = recorded(name, **recording)
-    if meaning == "current":
-        return scaled(1 / GAINS, samples)
-    q = samples.flat(samples.q)
-    gravity = solver_of(name).gravity_vector(q).reshape(samples.q.shape)
-    without = meaning == "torque_without_gravity"
-    return replace(samples, measured=samples.measured - gravity * without)
-
-
-@pytest.mark.parametrize("name", ["ur10", "panda"])
-@pytest.mark.parametrize("meaning", EFFORT_MEANINGS)
-def test_the_data_tell_each_meaning_of_efforts(name, meaning):
-    samples = efforts_of(name, meaning)
-    found = meaning_of_efforts(samples, model_of(name), GAINS[: len(samples.joints)])
-    assert (found.best, found.sure) == (meaning, True), found.reason
-    assert found.summary.startswith(f"{meaning} is ")
 
 
 @pytest.mark.parametrize("gravity", [(0, 0, 9.81), (9.81, 0, 0), (0, 9.81, 0)])
@@ -536,7 +509,7 @@ def test_an_arm_that_carries_no_weight_cant_tell_its_efforts_apart():
 
 
 def test_currents_without_gains_fit_no_meaning():
-    found = meaning_of_efforts(efforts_of("panda", "current"), model_of("panda"), ())
+    found = meaning_of_efforts(scaled(1 / GAINS, recorded("panda")), model_of("panda"), ())
     assert not found.sure or found.best == "torque"  # then the causes doubt it
     assert "current wasn't considered, as no drive gains are known" in found.summary
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from command_line import fails
-from test_many_evaluations import NO_FIGURE, QUICK, RAW, ROBOT, bags, fifo_held_open, fifo_is_open
+from test_many_evaluations import QUICK, ROBOT, bags, fifo_held_open, fifo_is_open
 from test_workers import square
 
 from inverse_dynamics import evaluate_many
@@ -85,21 +85,6 @@ def test_results_are_those_of_this_machine(cluster, ids, bags, tmp_path, monkeyp
     for name in there.directories:
         series = [tmp_path / run / name / "series.npz" for run in ("here", "there")]
         assert series[0].read_bytes() == series[1].read_bytes()
-
-
-def test_the_command_names_what_fails(cluster, ids, bags, tmp_path):
-    (tmp_path / "bad.csv").write_text("time\n1\n")
-    command = ("evaluate", "bad.csv", bags, *ROBOT, *RAW, *NO_FIGURE, "--out", "week")
-    code, out, err = ids(*command, "--scheduler", cluster.scheduler_address)
-    assert code == 3
-    failed = "1 of 4 recordings failed:\n  bad: bad.csv: expected columns"
-    assert failed in err.replace(f"{tmp_path}/", "")
-    assert "wednesday" in out
-    assert sorted(p.name for p in (tmp_path / "week").iterdir() if p.is_dir()) == [
-        "monday",
-        "tuesday",
-        "wednesday",
-    ]
 
 
 def process_with_open(fifo):

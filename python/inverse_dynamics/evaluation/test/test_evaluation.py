@@ -9,7 +9,7 @@ import pytest
 from example_recordings import joint_log, motion, recording
 from example_robots import JOINTS, RIGID_BODY, UR10, URDF
 
-from inverse_dynamics import Solver, cli, evaluate, load_robot, read_recording
+from inverse_dynamics import cli, evaluate, load_robot, read_recording
 from inverse_dynamics.errors import (
     BagError,
     EvaluationError,
@@ -91,23 +91,6 @@ def test_another_plugin(bag, robot):
     assert "unfit for forward dynamics" in result.notes[0]
 
 
-def test_without_friction(tmp_path, robot):
-    recording(tmp_path / "bag", Solver(UR10, friction=False))
-    ur10 = replace(robot, plugin=UR10, friction=True)
-    assert evaluate(tmp_path / "bag", ur10).errors[0].nrmse > 0.01
-    result = evaluate(tmp_path / "bag", ur10, friction=False)
-    assert result.errors[0].nrmse < 0.005
-    assert result.robot.friction is False
-
-
-def test_another_gravity(tmp_path, robot):
-    wall = (0.0, -9.81, 0.0)
-    solver = Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0", gravity=wall)
-    recording(tmp_path / "bag", solver)
-    assert evaluate(tmp_path / "bag", robot).errors[1].nrmse > 0.1
-    assert evaluate(tmp_path / "bag", robot, gravity=wall).errors[1].nrmse < 0.005
-
-
 def test_another_description_root_and_tip(tmp_path, robot, bag):
     urdf = tmp_path / "arm.urdf"
     urdf.write_text(URDF.read_text().replace('"tool0"', '"hand"'))
@@ -128,13 +111,6 @@ def test_a_description_that_a_solver_has_no_use_for_is_said_to_be_drawn_only(bag
     assert said in " ".join(evaluate(bag, robot, plugin=UR10, urdf=URDF).notes)
     assert said not in " ".join(evaluate(bag, robot, plugin=UR10).notes)
     assert evaluate(bag, robot, urdf=URDF).notes == ()
-
-
-def test_a_configurations_cutoff_goes_with_its_own_method_only(bag, robot):
-    configured = replace(robot, accelerations="low-pass", cutoff=10.0)
-    assert evaluate(bag, configured).accelerations.cutoff == 10.0
-    raw = evaluate(bag, configured, accelerations="backward-difference")
-    assert raw.accelerations.cutoff is None
 
 
 # What is odd about samples is reported.
@@ -171,13 +147,6 @@ def test_description_that_is_no_xml_is_an_error_whoever_reads_it(bag, robot, tmp
     (tmp_path / "arm.urdf").write_text("<robot name='arm'><link/></robot>")
     with pytest.raises(RobotError, match=r"arm\.urdf: URDF:1: .*name"):
         evaluate(bag, robot, urdf=tmp_path / "arm.urdf", plugin=UR10, root="", tip="")
-
-
-def test_a_path_of_a_description_that_is_too_long_is_an_error(bag, robot):
-    with pytest.raises(RobotError, match=r"x{100,}: (no such file|can't be read)"):
-        evaluate(bag, robot, urdf="x" * 5000)
-    with pytest.raises(RobotError, match=r"^robot 'x+\.\.\.': expected one of"):
-        evaluate(bag, "x" * 5000)
 
 
 XACRO = """\

@@ -6,6 +6,8 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 import pytest
+from example_recordings import write_motion
+from simulation_arms import joint, link, robot
 
 from inverse_dynamics._core import ArmFitter, RobotDescription
 from inverse_dynamics.cli import make_parser
@@ -24,32 +26,16 @@ RATE = 200  # Hz
 LEFT = -1.2  # rad
 
 
-def _link(name: str, mass: float, center: str = "0.2 0.02 -0.1") -> str:
-    return (
-        f"<link name='{name}'><inertial><origin xyz='{center}'/><mass value='{mass}'/>"
-        "<inertia ixx='0.02' ixy='0' ixz='0' iyy='0.03' iyz='0' izz='0.025'/></inertial></link>"
-    )
-
-
-def _joint(name: str, parent: str, child: str, xyz: str, axis: str, kind: str = "revolute") -> str:
-    return (
-        f"<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>"
-        f"<origin xyz='{xyz}'/><axis xyz='{axis}'/>"
-        "<limit lower='-3' upper='3' effort='500' velocity='5'/></joint>"
-    )
-
-
-URDF = (
-    "<robot name='torso'><link name='base'/>"
-    + _link("trunk", 20)
-    + _link("right_arm", 5)
-    + _link("left_arm", 5)
-    + _link("finger", 0.5, "0.05 0 0")
-    + _joint("waist", "base", "trunk", "0 0 1", "0 1 0")
-    + _joint("right", "trunk", "right_arm", "0 -0.3 0.5", "0 1 0")
-    + _joint("left", "trunk", "left_arm", "0 0.3 0.5", "0 1 0")
-    + _joint("grip", "left_arm", "finger", "0.4 0 -0.1", "1 0 0", "prismatic")
-    + "</robot>"
+URDF = robot(
+    link("base"),
+    link("trunk", 20, "0.2 0.02 -0.1"),
+    link("right_arm", 5, "0.2 0.02 -0.1"),
+    link("left_arm", 5, "0.2 0.02 -0.1"),
+    link("finger", 0.5, "0.05 0 0"),
+    joint("waist", "base", "trunk", xyz="0 0 1"),
+    joint("right", "trunk", "right_arm", xyz="0 -0.3 0.5"),
+    joint("left", "trunk", "left_arm", xyz="0 0.3 0.5"),
+    joint("grip", "left_arm", "finger", "prismatic", xyz="0.4 0 -0.1", axis="1 0 0"),
 )
 
 
@@ -87,10 +73,8 @@ def table(file, left: float = 0.0, joints=JOINTS):
     time, q, qd, qdd = motion(left=left)
     tau = torques(q, qd, qdd)
     columns = [JOINTS.index(joint) for joint in joints]
-    head = [f"{kind}.{j}" for kind in ("position", "velocity", "effort") for j in joints]
-    values = np.column_stack([time, q[:, columns], qd[:, columns], tau[:, columns]])
-    np.savetxt(file, values, "%.12g", ",", header=",".join(["time", *head]), comments="")
-    return file
+    states = {"position": q, "velocity": qd, "effort": tau}
+    return write_motion(file, joints, time, **{k: x[:, columns] for k, x in states.items()})
 
 
 def bag(path):
@@ -163,7 +147,7 @@ def test_only_joints_on_moving_links_are_carried():
     assert carried_joints(RobotDescription(URDF), CHAIN) == {"left": "rad", "grip": "m"}
     assert carried_joints(RobotDescription(URDF), ("right",), "trunk") == {}
     assert carried_joints(RobotDescription(URDF), ("left",), "trunk") == {"grip": "m"}
-    follower = URDF.replace("<axis xyz='1 0 0'/>", "<axis xyz='1 0 0'/><mimic joint='left'/>")
+    follower = URDF.replace('<axis xyz="1 0 0"/>', '<axis xyz="1 0 0"/><mimic joint="left"/>')
     assert carried_joints(RobotDescription(follower), CHAIN) == {"left": "rad"}
 
 

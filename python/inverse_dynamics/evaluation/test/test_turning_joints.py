@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_recordings import write_motion
 from example_robots import KDL, RIGID_BODY
 from simulation_arms import joint, link, robot
 
@@ -76,11 +77,8 @@ def log_of(report: str, effort: np.ndarray, *how: float) -> JointLog:
 
 
 def write_csv(path: Path, log: JointLog) -> Path:
-    fields = ("position", "velocity", "effort")
-    head = ",".join(["time", *(f"{field}.{name}" for field in fields for name in JOINTS)])
-    numbers = np.column_stack([log.time, log.q, log.qd, log.effort])
-    np.savetxt(path, numbers, "%.17g", ",", header=head, comments="")
-    return path
+    states = {"position": log.q, "velocity": log.qd, "effort": log.effort}
+    return write_motion(path, JOINTS, log.time, **states)
 
 
 def recordings(directory: Path, effort: np.ndarray, *how: float) -> dict[str, Path]:

@@ -109,21 +109,6 @@ def is_running(process):
     return state != "Z"
 
 
-def test_an_exception_ends_all_workers_at_once(tmp_path):
-    file = tmp_path / "process"
-
-    def stop(index, outcome):
-        while not file.exists() or not file.read_text():
-            time.sleep(0.01)
-        raise KeyboardInterrupt
-
-    start = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        in_processes(sleep_after_the_first, [None, str(file)], jobs=2, done=stop)
-    assert time.monotonic() - start < 60
-    assert not is_running(int(file.read_text()))
-
-
 def test_workers_end_with_the_process_that_started_them(tmp_path):
     file = tmp_path / "process"
     script = (

@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from command_line import fails
 from identified_arms import identification
 from simulation_arms import robots_package, two_links
 
-from inverse_dynamics.cli import main
 from inverse_dynamics.excitation import excitation
 from inverse_dynamics.excitation.excitation import ExcitationOptions
 from inverse_dynamics.excitation.excite import excite
@@ -29,33 +29,29 @@ from inverse_dynamics.simulation.trajectory import WaypointTrajectory, read_traj
 
 
 @pytest.fixture
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+def quick(monkeypatch):
     """Searches of a few iterations."""
     monkeypatch.setattr(excitation, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
 
 
 @pytest.fixture
-def arm(tmp_path: Path) -> Path:
-    file = tmp_path / "arm.urdf"
-    file.write_text(two_links())
-    return file
+def arm(tmp_path):
+    (tmp_path / "arm.urdf").write_text(two_links())
+    return tmp_path / "arm.urdf"
 
 
 @pytest.mark.usefixtures("quick")
-def test_writes_a_motion_and_the_message_to_send(
-    arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = tmp_path / "motion.yaml"
-    assert main(["excite", "--urdf", str(arm), "--duration", "8", "--out", str(out)]) == 0
-    printed = capsys.readouterr()
-    assert printed.err == "ids: searching for the motion, which takes about a minute ...\n"
-    assert "motion         8 s, condition number of the base regressor" in printed.out
-    assert "noise          1 % of each effort limit" in printed.out
-    rows = re.findall("N m .*", printed.out)
+def test_writes_a_motion_and_the_message_to_send(ids, arm, tmp_path):
+    code, printed, err = ids("excite", "--urdf", arm, "--duration", "8", "--out", "motion.yaml")
+    assert code == 0
+    assert err == "ids: searching for the motion, which takes about a minute ...\n"
+    assert "motion         8 s, condition number of the base regressor" in printed
+    assert "noise          1 % of each effort limit" in printed
+    rows = re.findall("N m .*", printed)
     shares = [int(share) for row in rows for share in row.split()[4:7]]
     assert 70 < max(shares) <= 80  # of the limits, of which --share leaves as much
-    assert f"written        {out}, {tmp_path / 'motion_joint_trajectory.yaml'}" in printed.out
-    motion, source = read_trajectory(out, ("shoulder", "lift", "fold"))
+    assert "written        motion.yaml, motion_joint_trajectory.yaml" in printed
+    motion, source = read_trajectory(tmp_path / "motion.yaml", ("shoulder", "lift", "fold"))
     assert "made by ids excite" in source
     message = yaml.safe_load((tmp_path / "motion_joint_trajectory.yaml").read_text())
     assert message["joint_names"] == ["shoulder", "lift", "fold"]
@@ -88,21 +84,16 @@ def test_message_with_points_of_equal_distance() -> None:
 
 
 @pytest.mark.usefixtures("quick")
-def test_motion_is_followed_by_the_simulated_robot(tmp_path: Path) -> None:
-    out = tmp_path / "motion.yaml"
-    assert main(["excite", "--robot", "ur10_simulated", "--duration", "6", "--out", str(out)]) == 0
-    bag = str(tmp_path / "bag")
-    command = ["simulate", "--robot", "ur10_simulated", "--trajectory", str(out), "--out", bag]
-    assert main([*command, "--rate", "125"]) == 0
+def test_motion_is_followed_by_the_simulated_robot(ids):
+    robot = ("--robot", "ur10_simulated")
+    assert ids("excite", *robot, "--duration", "6", "--out", "motion.yaml")[0] == 0
+    command = ("simulate", *robot, "--trajectory", "motion.yaml", "--out", "bag")
+    assert ids(*command, "--rate", "125")[0] == 0
 
 
 @pytest.mark.usefixtures("quick")
-def test_table_compares_with_the_stored_motion_of_the_robot(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = tmp_path / "motion.yaml"
-    assert main(["excite", "--robot", "panda_simulated", "--out", str(out)]) == 0
-    printed = capsys.readouterr().out
+def test_table_compares_with_the_stored_motion_of_the_robot(ids):
+    _, printed, _ = ids("excite", "--robot", "panda_simulated", "--out", "motion.yaml")
     assert re.search(r"unit +from +to +speed +acc\. +torque +before +stored +after", printed)
 
 
@@ -149,43 +140,23 @@ def test_given_recording_that_never_moves_the_wrist_is_completed(tmp_path: Path)
         (["--urdf", "no.urdf"], "no.urdf: no such file"),
         (["--urdf", __file__], f"{__file__}: isn't XML; expected a URDF"),
         (["--tip", "nowhere"], "tip: expected a link of the robot, got 'nowhere'"),
-    ],
-)
-def test_mistakes_end_with_code_2_and_leave_nothing(
-    arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], text: str
-) -> None:
-    out = tmp_path / "motion.yaml"
-    given = [] if "--urdf" in options else ["--urdf", str(arm)]
-    assert main(["excite", *given, *options, "--out", str(out)]) == 2
-    error = capsys.readouterr().err
-    assert text in error
-    assert error.count("\n") == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["arm.urdf"]
-
-
-@pytest.mark.parametrize(
-    ("options", "text"),
-    [
         (["--share", "1.5"], "expected a part, above 0 and up to 1, got '1.5'"),
         (["--robot", "ur10_simulated"], "not allowed with"),
     ],
 )
-def test_wrong_options_are_named(
-    arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], text: str
-) -> None:
-    with pytest.raises(SystemExit) as stop:
-        main(["excite", "--urdf", str(arm), "--out", str(tmp_path / "motion.yaml"), *options])
-    assert stop.value.code == 2
-    assert text in capsys.readouterr().err
+def test_mistakes_are_told_in_one_line_and_leave_nothing(ids, arm, tmp_path, options, text):
+    result = ids("excite", "--urdf", arm, "--out", "motion.yaml", *options)
+    fails(result, text)
+    assert result[2].count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["arm.urdf"]
 
 
-def test_older_files_are_replaced_only_where_that_is_asked(
-    arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_older_files_are_replaced_only_where_that_is_asked(ids, arm, tmp_path):
     (tmp_path / "motion_joint_trajectory.yaml").write_text("mine")
-    out = tmp_path / "motion.yaml"
-    assert main(["excite", "--urdf", str(arm), "--out", str(out)]) == 2
-    assert "motion_joint_trajectory.yaml: exists already" in capsys.readouterr().err
+    fails(
+        ids("excite", "--urdf", arm, "--out", "motion.yaml"),
+        "motion_joint_trajectory.yaml: exists already",
+    )
     assert (tmp_path / "motion_joint_trajectory.yaml").read_text() == "mine"
 
 

@@ -50,19 +50,6 @@ def test_rows_times_parameters_are_the_torques_and_friction() -> None:
     np.testing.assert_array_equal(np.delete(Z @ b, 3, axis=1), 0.0)
 
 
-@pytest.mark.parametrize("payload", [False, True])
-def test_a_weighted_sum_is_that_of_rows_and_torques(payload: bool) -> None:
-    unknowns = ExcitationOptions(payload=payload).unknowns(simulated("panda"))
-    states = unknowns.random_states(50)
-    Z, tau = unknowns.rows_and_torques(*states)
-    random = np.random.default_rng(2)
-    U, U_tau = random.standard_normal(Z.shape), random.standard_normal(tau.shape)
-    expected = (U * Z).sum(axis=(1, 2)) + (U_tau * tau).sum(axis=1)
-    weighted = unknowns.weighted_sum(U, U_tau)
-    for gravity in (None, unknowns.gravity(states.q)):
-        np.testing.assert_allclose(weighted(*states, gravity), expected, rtol=1e-9, atol=1e-9)
-
-
 def test_deviation_is_that_of_estimates_from_simulated_noise() -> None:
     """Draw parameters from the prior, measure with noise, estimate, predict: the errors' deviation."""
     unknowns = unknowns_of()

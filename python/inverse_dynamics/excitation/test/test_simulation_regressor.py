@@ -5,43 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from simulation_arms import joint, link, robot, simulated
+from simulation_arms import simulated
 
 from inverse_dynamics.excitation.information import base_count, condition_number, engine_of
-from inverse_dynamics.simulation.model import Payload, SimulatedRobot
-
-MIXED = robot(
-    link("base", 3.0),
-    link("carriage", 2.0, "0.1 0.2 0.3"),
-    link("arm", 1.0, "0.3 -0.1 0.2"),
-    link("slide", 0.5, "0 0.1 -0.2"),
-    link("tool", 0.2, "0.1 0 0"),
-    joint("rail", "base", "carriage", kind="prismatic", axis="0.6 0 0.8", rpy="0.2 0.4 -1"),
-    joint("turn", "carriage", "arm", axis="0 1 0", xyz="0.1 0.2 0.3", rpy="1 -0.5 0.7"),
-    joint("reach", "arm", "slide", kind="prismatic", axis="1 0 0", xyz="0.3 0 0.1"),
-    joint("flange", "slide", "tool", kind="fixed", xyz="0.2 0 0", rpy="0.3 0.2 0.1"),
-)
-
-
-def arms() -> dict[str, SimulatedRobot]:
-    tilted = (1.0, -2.0, -9.0)
-    return {
-        "ur10": simulated("ur10", gravity=tilted),
-        "panda": simulated("panda", gravity=tilted, payload=Payload(2.0, (0.1, -0.05, 0.2))),
-        "prismatic joints": SimulatedRobot.from_urdf(MIXED, gravity=tilted),
-    }
-
-
-@pytest.mark.parametrize("name", arms())
-def test_regressor_times_parameters_are_the_torques(name: str) -> None:
-    arm = arms()[name]
-    q, qd, qdd = np.random.default_rng(1).normal(size=(3, 100, len(arm.chain.joint_names)))
-    tau = arm.torques(q, qd, qdd)
-    engine = engine_of(arm)
-    # rounding: torques of up to 1e3 N m
-    np.testing.assert_allclose(
-        engine.regressor(q, qd, qdd) @ engine.parameters, tau, rtol=0, atol=1e-10
-    )
 
 
 # How many combinations of inertial parameters have an influence: with gravity along the first axis 36 for a UR10,

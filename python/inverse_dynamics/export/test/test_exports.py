@@ -12,7 +12,6 @@ from example_robots import JOINTS, UR10
 
 from inverse_dynamics import Solver, cli, evaluate, write_evaluation
 from inverse_dynamics._core import Effort
-from inverse_dynamics.errors import OutputError
 from inverse_dynamics.evaluation.exports import export_series, series_columns
 from inverse_dynamics.recordings.bags import write_joint_logs
 from inverse_dynamics.recordings.joint_log import JointLog
@@ -142,24 +141,6 @@ def test_names_with_commas_are_quoted(tmp_path, evaluation):
     assert 'position.c"d' in header
 
 
-def test_tables_are_replaced_only_on_demand(run, capsys):
-    (run / "series.csv").write_text("mine")
-    assert cli.main(["export", str(run)]) == 2
-    assert "exists already" in capsys.readouterr().err
-    assert (run / "series.csv").read_text() == "mine"
-    assert cli.main(["export", str(run), "--overwrite"]) == 0
-    assert (run / "series.csv").read_text().startswith("time,position.joint_1")
-
-
-def test_a_table_that_fails_half_way_leaves_nothing(tmp_path, evaluation):
-    def fail(*_):
-        raise OSError(28, "No space left on device")
-
-    with pytest.raises(OutputError, match="No space left on device"):
-        export_series(evaluation, tmp_path / "t.csv", progress=fail)
-    assert os.listdir(tmp_path) == []
-
-
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
@@ -179,12 +160,6 @@ def test_bad_options_are_said(run, tmp_path, monkeypatch, capsys, arguments, tex
     assert code == 2
     assert text in capsys.readouterr().err
     assert os.listdir(tmp_path) == ["run"]
-
-
-def test_what_is_no_result_is_said(tmp_path, capsys):
-    assert cli.main(["export", str(tmp_path)]) == 2
-    assert "holds no evaluation.json" in capsys.readouterr().err
-    assert os.listdir(tmp_path) == []
 
 
 def test_without_pyarrow_the_remedy_is_said(run, monkeypatch, capsys):

@@ -21,13 +21,12 @@ from example_recordings import (
     write_table,
     write_trajectories,
 )
-from example_robots import JOINTS, RIGID_BODY, URDF
+from example_robots import JOINTS, URDF
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, Reader, StoragePlugin, Writer
 from rosbags.rosbag2.writer import zstd
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from inverse_dynamics import (
-    Solver,
     cli,
     load_robot,
     read_recording,
@@ -37,13 +36,6 @@ from inverse_dynamics import (
 from inverse_dynamics.errors import BagError, OutputError
 
 BACKWARDS = JOINTS[::-1]
-
-
-@pytest.fixture(scope="module")
-def torques():
-    q, qd, qdd, _ = motion()
-    solver = Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0")
-    return solver.torques(q, qd, qdd)
 
 
 @pytest.fixture(scope="module")
@@ -293,6 +285,7 @@ def test_points_of_a_plan_may_be_seconds_apart(tmp_path, robot):
     )
     np.testing.assert_allclose(np.diff(result.times[0]), 2.0)
     assert {what for what, *_ in heard} == {"reading", "computing"}
+    assert ("computing", 0, 1) in heard
 
 
 def test_another_description_and_chain_may_be_given(tmp_path, capsys):

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from example_recordings import motion
 from example_robots import JOINTS
-from identified_arms import engine, identification
+from identified_arms import identification
 
 from inverse_dynamics import Solver, write_joint_logs
 from inverse_dynamics._core import ArmUncertainty
-from inverse_dynamics.errors import InvalidParameterError, RobotError
+from inverse_dynamics.errors import RobotError
 from inverse_dynamics.evaluation import bands
 from inverse_dynamics.identification.cross_validation import noise_in_motion
 from inverse_dynamics.identification.files import write_identification
@@ -53,17 +53,6 @@ def test_the_file_has_the_deviations_of_the_fit(found, model):
         np.testing.assert_allclose(
             read.torques(solver, z, states()), expected, rtol=1e-5, atol=1e-6 * abs(expected).max()
         )
-
-
-def test_deviations_of_links_are_in_the_frames_of_the_engine(found, model):
-    """The regressor of the description times a deviation is what the solver of the model file makes of it."""
-    solver = Solver(RIGID_BODY, model=str(model))
-    factor = np.zeros((SIZE, 1))
-    factor[: 10 * len(JOINTS), 0] = np.random.default_rng(5).normal(size=10 * len(JOINTS))
-    q, qd, qdd = states()
-    expected = engine().regressor(q, qd, qdd) @ factor[: 10 * len(JOINTS), 0]
-    torques = ArmUncertainty(found.model.friction, factor).torques(solver, [1.0], (q, qd, qdd))
-    np.testing.assert_allclose(torques, expected, atol=1e-10)
 
 
 def test_a_file_of_another_model_is_left_aside(model):
@@ -125,13 +114,6 @@ def test_what_is_not_json_is_refused(model):
         model_errors_file(model).write_text(text)
         with pytest.raises(RobotError, match=r"arm_model\.json: expected JSON of `ids identify`"):
             read_uncertainty(model)
-
-
-def test_an_uncertainty_of_another_arm_is_refused(found, model):
-    solver = Solver(RIGID_BODY, model=str(model))
-    other = ArmUncertainty(found.model.friction[1:], found.factor)
-    with pytest.raises(InvalidParameterError, match="laws of friction"):
-        other.torques(solver, np.zeros(5), tuple(values[:, 1:] for values in states()))
 
 
 def test_payloads_are_estimated_with_the_deviations_that_a_model_has(model, tmp_path):

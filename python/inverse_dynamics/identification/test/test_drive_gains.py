@@ -194,12 +194,6 @@ def test_a_recording_is_either_loaded_or_not(currents, bags):
         identify([bags[0]], currents.robot, known_payloads=[(bags[0], LOAD)])
 
 
-def test_a_center_that_is_not_stated_is_not_taken_for_the_origin(ids, bags, tmp_path):
-    options = ["--robot", "ur10_simulated", "--effort-is", "current", "--out", "arm.yaml"]
-    load = f"{bags[1]}=2.8"
-    fails(ids("identify", str(bags[0]), "--known-payload", load, *options), "got a mass alone")
-
-
 @pytest.mark.parametrize("text", ["loaded", "=5", "loaded=five", "loaded=5,1"])
 def test_the_option_is_a_recording_and_a_load(text, ids):
     options = ["--known-payload", text, "--robot", "ur10_simulated", "--out", "arm.yaml"]

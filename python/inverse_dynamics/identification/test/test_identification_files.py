@@ -43,6 +43,15 @@ def files(found, tmp_path_factory):
 
 
 @pytest.fixture
+def tuesday(tmp_path):
+    """Another recording of the same motion."""
+    q, qd, qdd, stamps = motion()
+    log = JointLog(JOINTS, stamps, stamps, q, qd, simulated_torques(q, qd, qdd, seed=7))
+    write_joint_logs(tmp_path / "tuesday", {log.topic: log})
+    return tmp_path / "tuesday"
+
+
+@pytest.fixture
 def states(found):
     """Random ones within what was seen, (200, n) each."""
     low, high = np.moveaxis(found.model.seen, 2, 0)
@@ -57,14 +66,11 @@ def test_the_model_file_predicts_what_the_identification_does(found, files, stat
     np.testing.assert_allclose(solver.torques(*states), expected, rtol=0, atol=1e-10)
 
 
-def test_the_robot_evaluates_with_the_error_of_the_noise(found, files, tmp_path):
-    q, qd, qdd, stamps = motion()
-    log = JointLog(JOINTS, stamps, stamps, q, qd, simulated_torques(q, qd, qdd, seed=1))
-    write_joint_logs(tmp_path / "again", {log.topic: log})
-    result = evaluate(tmp_path / "again", files.robot)
+def test_the_robot_evaluates_with_the_error_of_the_noise(found, files, tuesday):
+    result = evaluate(tuesday, files.robot)
     assert result.robot.model == files.model
     assert result.mean_rmse == pytest.approx(found.noise.mean(), rel=0.1)
-    assert evaluate(tmp_path / "again", "ur10_simulated").mean_rmse > 20 * result.mean_rmse
+    assert evaluate(tuesday, "ur10_simulated").mean_rmse > 20 * result.mean_rmse
 
 
 def test_parameters_are_in_the_frames_of_the_description():
@@ -214,19 +220,8 @@ def test_a_motion_outside_of_what_was_seen_is_told(found, files):
     assert "wrist_3_joint q -2 to 2 m (seen -1 to 1)" in far
 
 
-def test_evaluation_tells_it_too(files, tmp_path):
-    q, qd, qdd, stamps = motion()
-    log = JointLog(JOINTS, stamps, stamps, 1.5 * q, qd, simulated_torques(q, qd, qdd))
-    write_joint_logs(tmp_path / "far", {log.topic: log})
-    notes = evaluate(tmp_path / "far", files.robot).notes
-    assert any(note.startswith("the motion leaves the range") for note in notes)
-
-
-def test_a_recording_that_was_held_out_is_a_table_of_its_own(found, tmp_path):
-    q, qd, qdd, stamps = motion()
-    log = JointLog(JOINTS, stamps, stamps, q, qd, simulated_torques(q, qd, qdd, seed=7))
-    write_joint_logs(tmp_path / "tuesday", {log.topic: log})
-    test = hold_out(found, tmp_path / "tuesday")
+def test_a_recording_that_was_held_out_is_a_table_of_its_own(found, tuesday, tmp_path):
+    test = hold_out(found, tuesday)
     assert set(test.rmse) == {"urdf", "identified"}
     assert test.rmse["identified"].mean() == pytest.approx(found.noise.mean(), rel=0.1)
     assert test.rmse["urdf"].mean() > 20 * test.rmse["identified"].mean()
@@ -252,16 +247,13 @@ def test_errors_of_blocks_are_of_the_samples_that_count(found, tmp_path):
         assert figures["samples"] == 270
 
 
-def test_a_recording_that_was_held_out_has_the_refitted_present_model_too(found, tmp_path):
-    q, qd, qdd, stamps = motion()
-    log = JointLog(JOINTS, stamps, stamps, q, qd, simulated_torques(q, qd, qdd, seed=7))
-    write_joint_logs(tmp_path / "tuesday", {log.topic: log})
+def test_a_recording_that_was_held_out_has_the_refitted_present_model_too(found, tuesday):
     # the present model: the description, whose friction is refitted
     blocks = tuple(
         replace(b, computed={**b.computed, "present": b.computed["urdf"]}) for b in found.blocks
     )
     held = {**found.held_out, "present": found.held_out["urdf"]}
-    test = hold_out(replace(found, blocks=blocks, held_out=held), tmp_path / "tuesday")
+    test = hold_out(replace(found, blocks=blocks, held_out=held), tuesday)
     assert set(test.rmse) == {"urdf", "present", "present_refitted", "identified"}
     np.testing.assert_allclose(test.rmse["present"], test.rmse["urdf"])
     # viscous friction, step and offset are those of the blocks; links are 5 % too light

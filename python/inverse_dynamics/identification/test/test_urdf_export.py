@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from example_robots import JOINTS, URDF
-from identified_arms import arm, engine, identification
+from identified_arms import engine, identification
 from test_identification_files import OBLIQUE
 
 from inverse_dynamics import FastModel, Solver
@@ -71,6 +71,9 @@ def test_friction_is_in_dynamics_and_the_rest_is_told(found, text):
     sharp = dynamics(urdf_text(with_friction(found, width=1e-6)))
     np.testing.assert_allclose(sharp, [[f["fv"], f["fc"]] for f in found.model.friction], rtol=1e-6)
     assert "Not held here: the width of the step; offsets." in text
+    rotor = "Rotor inertia has no place in a URDF"
+    assert rotor in text
+    assert rotor not in mjcf_text(found)
 
 
 def test_friction_is_the_nearest_to_the_law(found):
@@ -123,7 +126,6 @@ def test_what_is_fixed_to_a_link_is_part_of_it(found, tmp_path):
 
 
 def test_mujoco_takes_both(found):
-    found = replace(found, model=arm())  # the ridged fit needn't be a body's
     mujoco = pytest.importorskip("mujoco")
     assert mujoco.MjModel.from_xml_string(urdf_text(found)).nv == len(JOINTS)
     model = mujoco.MjModel.from_xml_string(mjcf_text(found))
@@ -145,7 +147,7 @@ def test_mujoco_takes_both(found):
 def test_mujoco_friction_rises_as_the_law_does(found):
     """By a ramp over the width of its step, whatever else moves the joint, at rest too."""
     mujoco = pytest.importorskip("mujoco")
-    wide = with_friction(replace(found, model=arm()), width=0.3)
+    wide = with_friction(found, width=0.3)
     text = mjcf_text(wide)
     assert "width" not in text
     model = mujoco.MjModel.from_xml_string(text)

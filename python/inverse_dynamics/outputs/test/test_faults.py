@@ -230,16 +230,6 @@ def test_a_read_only_place_is_told_before_the_work(ids, bag, result, small_disk)
         fails(ids(*command), f"can't be written ({small_disk} may not be written to); name another")
 
 
-def test_a_comparison_is_replaced_as_a_whole(ids, result, tmp_path):
-    command = ("compare", result, result, "--labels", "a,b", "--out", "out")
-    assert ids(*command)[0] == 0
-    first = (tmp_path / "out").stat().st_ino
-    assert ids(*command)[::2] == (0, "ids: replaced the earlier result in out\n")
-    assert (tmp_path / "out").stat().st_ino != first
-    (tmp_path / "out" / "notes.txt").touch()
-    fails(ids(*command, "--overwrite"), "1 file that this command doesn't write (notes.txt)")
-
-
 def test_an_output_that_takes_nothing_is_told_with_what_was_written(result, tmp_path):
     with open("/dev/full", "w") as full:
         finished = subprocess.run(

@@ -6,11 +6,11 @@ import http.server
 import os
 import socket
 import threading
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from inverse_dynamics import cli
 from inverse_dynamics.demo.demo import find_recordings
 from inverse_dynamics.errors import RecordingsError, UserError
 from inverse_dynamics.public_recordings import public_recordings
@@ -99,17 +99,9 @@ def table(tmp_path, monkeypatch, server):
 
 
 @pytest.fixture
-def ids(tmp_path, capsys, table):
+def ids(ids, table):
     """`ids data --out out`; gives exit code, stdout, stderr."""
-
-    def run(*arguments):
-        try:
-            code = cli.main(["data", "--out", str(tmp_path / "out"), *map(str, arguments)])
-        except SystemExit as exit_:
-            code = exit_.code
-        return code, *capsys.readouterr()
-
-    return run
+    return partial(ids, "data", "--out", "out")
 
 
 def files(directory):
@@ -131,13 +123,6 @@ def test_recordings_are_fetched_whole_and_their_size_is_said_first(ids, tmp_path
     assert files(tmp_path / "out") == ALL
     assert (tmp_path / "out/bags/one/one.db3").read_bytes() == ONE
     assert (tmp_path / "out/bags/one/metadata.yaml").read_text() == "of: one\n"
-
-
-def test_recordings_may_lie_below_the_working_directory(ids, tmp_path, monkeypatch):
-    """As they do by default for who calls `ids data` in the home directory."""
-    monkeypatch.chdir(tmp_path)
-    assert ids()[::2] == (0, "")
-    assert files(tmp_path / "out") == ALL
 
 
 def test_what_is_there_and_intact_is_left_alone(ids, tmp_path, server):
@@ -180,24 +165,19 @@ def nothing_is_kept(result, tmp_path, *expected):
     assert not (tmp_path / "out").exists() or files(tmp_path / "out") == []
 
 
-def test_another_file_is_refused(ids, tmp_path, server):
-    server.files["a/one.db3"] = ONE[:-1] + b"x"
-    nothing_is_kept(ids(), tmp_path, f"{server.url}/a/one.db3: expected SHA-256", sha256(ONE))
-
-
-def test_a_longer_file_is_refused(ids, tmp_path, server):
-    server.files["a/one.db3"] = ONE + b"x"
-    nothing_is_kept(ids(), tmp_path, "expected 256000 bytes, got more")
-
-
-def test_a_file_that_is_not_there_is_said(ids, tmp_path, server):
-    server.files.clear()
-    nothing_is_kept(ids(), tmp_path, "the server says 404 Not Found", "git checkout abc", "--from")
-
-
-def test_a_transfer_that_is_cut_off_is_said(ids, tmp_path, server):
-    server.cut["a/one.db3"] = 100_000
-    nothing_is_kept(ids(), tmp_path, "expected 256000 bytes, got 100000", "cut off; try again")
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        ({"files": {"a/one.db3": ONE[:-1] + b"x"}}, ("a/one.db3: expected SHA-256", sha256(ONE))),
+        ({"files": {"a/one.db3": ONE + b"x"}}, ("expected 256000 bytes, got more",)),
+        ({"files": {}}, ("the server says 404 Not Found", "git checkout abc", "--from")),
+        ({"cut": {"a/one.db3": 100_000}}, ("expected 256000 bytes, got 100000", "cut off; try")),
+    ],
+    ids=["another", "longer", "missing", "cut off"],
+)
+def test_a_file_that_is_not_as_published_is_refused(ids, tmp_path, server, change, expected):
+    vars(server).update(change)
+    nothing_is_kept(ids(), tmp_path, *expected)
 
 
 def test_a_server_that_refuses_is_said(ids, tmp_path):

@@ -1,23 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from example_recordings import STORE, joint_log, write_messages
-from rosbags.rosbag2 import Reader
 
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.recordings.bags import (
-    TopicSummary,
     read_joint_log,
-    read_topics,
     write_joint_logs,
 )
 
 TOPIC = "/joint_states"
-STORAGES = pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
-JOINTS = ("joint_1", "joint_2", "joint_3")
 
 
 @pytest.fixture
@@ -44,42 +38,6 @@ def fails(bag: Path, *expected: str, **options: object) -> str:
 # What is written is read back.
 
 
-@STORAGES
-def test_joint_states_are_read_back_as_they_were_written(tmp_path, storage):
-    log = joint_log(9000, frame_id="base")  # more than one block
-    write_joint_logs(tmp_path / "bag", {TOPIC: log}, storage=storage)
-    for path in (tmp_path / "bag", storage_file(tmp_path / "bag")):
-        read = read_joint_log(path, JOINTS, topic=TOPIC)
-        for field in ("header_stamps", "receive_stamps", "q", "qd", "effort"):
-            np.testing.assert_array_equal(getattr(read, field), getattr(log, field))
-        assert read.joint_names == JOINTS
-        assert (read.frame_id, read.clock, read.topic, read.storage) == (
-            "base",
-            "header",
-            TOPIC,
-            storage,
-        )
-        assert read.notes == ()
-
-
-@STORAGES
-def test_two_topics_are_interleaved_and_told_apart(tmp_path, storage):
-    log = joint_log(10)
-    other = replace(log, effort=2 * log.effort)
-    write_joint_logs(tmp_path / "bag", {"/torques": other, "/torques_gt": log}, storage=storage)
-    kind = "sensor_msgs/msg/JointState"
-    assert read_topics(tmp_path / "bag") == [
-        TopicSummary("/torques", kind, 10),
-        TopicSummary("/torques_gt", kind, 10),
-    ]
-    np.testing.assert_array_equal(
-        read_joint_log(tmp_path / "bag", topic="/torques").effort, other.effort
-    )
-    with Reader(tmp_path / "bag") as reader:
-        topics = [c.topic for c, _, _ in reader.messages(connections=reader.connections)]
-    assert topics == ["/torques", "/torques_gt"] * 10
-
-
 def test_progress_counts_messages_to_the_end(bag):
     calls = []
     read_joint_log(bag, progress=lambda *call: calls.append(call))
@@ -87,11 +45,6 @@ def test_progress_counts_messages_to_the_end(bag):
 
 
 # Which time.
-
-
-def test_unknown_clock_is_an_error(bag):
-    with pytest.raises(BagError, match="expected one of auto, header, receive, got 'wall'"):
-        read_joint_log(bag, clock="wall")
 
 
 # What isn't a recording.

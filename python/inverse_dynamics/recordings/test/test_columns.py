@@ -119,11 +119,6 @@ def test_names_say_what_columns_hold(names, joints, expected):
     assert all(len(mapping.columns[kind]) in (1, len(joints)) for kind in mapping.columns)
 
 
-def test_a_before_a_number_is_an_axis_and_no_acceleration():
-    names = of("$AXIS_ACT A{}", "$TORQUE_AXIS_ACT A{}", numbers=range(1, 8))
-    assert [*match_columns(names, PANDA).columns] == ["position", "effort"]
-
-
 def test_units_in_names_are_kept():
     names = ["t_ms", *of("pos_deg_{}", "vel_deg_s_{}", "torque_mNm_{}", numbers=(1, 2))]
     mapping = match_columns(names, ["a", "b"])

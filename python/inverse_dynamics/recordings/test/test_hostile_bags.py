@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from example_recordings import joint_state, write_messages
-from example_robots import RIGID_BODY
 from simulation_arms import pendulum, write_robot
 
 from inverse_dynamics import Robot, evaluate, load_robot, write_joint_logs
@@ -44,9 +43,7 @@ def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def robot(tmp_path_factory: pytest.TempPathFactory) -> Robot:
-    file = write_robot(tmp_path_factory.mktemp("robot"), pendulum())
-    file.write_text(file.read_text().replace("some_package/SomeSolver", RIGID_BODY))
-    return load_robot(file)
+    return load_robot(write_robot(tmp_path_factory.mktemp("robot"), pendulum()))
 
 
 def refused(bag: Path, robot: Robot, expected: str = "", **options: object) -> None:

@@ -5,11 +5,10 @@ import re
 
 import numpy as np
 import pytest
-from example_recordings import JOINT_STATE, STORE, joint_state, motion
-from example_robots import JOINTS, UR10
+from example_recordings import JOINT_STATE, STORE, joint_state
 from rosbags.rosbag2 import StoragePlugin, Writer
 
-from inverse_dynamics import Solver, evaluate, load_robot, read_recording
+from inverse_dynamics import read_recording
 from inverse_dynamics.errors import BagError
 
 STORAGES = pytest.mark.parametrize("storage", [StoragePlugin.SQLITE3, StoragePlugin.MCAP])
@@ -104,26 +103,6 @@ def test_the_topic_that_has_everything_is_taken(tmp_path):
     )
     log = read_recording(bag, ("a", "b"), usual_topic="/joint_states")
     assert (log.topic, log.notes) == ("/arm", ())
-
-
-def test_an_arm_on_two_topics_is_evaluated_as_on_one(tmp_path):
-    q, qd, qdd, stamps = motion()
-    effort = Solver(UR10).torques(q, qd, qdd)
-
-    def part(joints):
-        rows = zip(stamps.tolist(), q, qd, effort, strict=True)
-        names = [JOINTS[j] for j in joints]
-        return [(t, joint_state(names, *(x[joints] for x in row), t)) for t, *row in rows]
-
-    topics = {"/lower/joint_states": part([0, 1, 2]), "/wrist/joint_states": part([5, 3, 4])}
-    merged = evaluate(write(tmp_path / "two", topics), load_robot("ur10_real"))
-    whole = evaluate(
-        write(tmp_path / "one", {"/joint_states": part(list(range(6)))}), load_robot("ur10_real")
-    )
-    np.testing.assert_array_equal(merged.computed, whole.computed)
-    assert [e.rmse for e in merged.errors] == [e.rmse for e in whole.errors]
-    assert merged.log.topic == "/lower/joint_states+/wrist/joint_states"
-    assert any(note.startswith("joint states are merged: ") for note in merged.notes)
 
 
 @pytest.mark.parametrize(

@@ -124,6 +124,7 @@ def test_given_accelerations_are_taken_unless_told_otherwise(file, solver):
         ("backward-difference", {}, "backward-difference", None),
         ("backward-difference", {"accelerations": "auto"}, "given", None),
         ("low-pass", {"accelerations": "given"}, "given", None),
+        ("low-pass", {"accelerations": "backward-difference"}, "backward-difference", None),
         ("given", {"accelerations": "low-pass", "cutoff": 9.0}, "low-pass", 9.0),
         ("low-pass", {"cutoff": 9.0}, "low-pass", 9.0),
     ],
@@ -374,16 +375,6 @@ def test_what_only_bags_have_cannot_be_chosen(file, option, said):
     assert len(read_recording(file, usual_topic="/joint_states")) == 2
 
 
-def test_accelerations_of_some_joints_are_not_enough(file):
-    header = "time,position.a,velocity.a,effort.a,position.b,velocity.b,effort.b,acceleration.a\n"
-    fails(
-        file,
-        header + "0,1,2,3,4,5,6,7\n",
-        "joint b: expected a column acceleration.b, got none",
-        joints=("a", "b"),
-    )
-
-
 def test_a_file_that_is_none_is_said(tmp_path):
     with pytest.raises(BagError, match="no such file; expected a table of numbers in text"):
         read_recording(tmp_path / "nothing.csv")
@@ -544,12 +535,6 @@ def test_joints_of_parquet_whose_names_stand_beside_are_in_the_order_of_the_chai
     parquet.write_table(pa.table({**columns, "name": [["b", "a"], ["a", "b"]]}), file)
     with pytest.raises(BagError, match="name: expected the joints b, a in all messages"):
         read_recording(file, ("a", "b"))
-
-
-def test_names_that_pandas_counts_are_no_numbers(file):
-    file.write_text("0,1,2,3\n0,1,2,3\n0.1,4,5,6\n")
-    log = read_recording(file, ("a",), form=LogFormat("time=1, q=2-2, qd=3-3, effort=4-4"))
-    np.testing.assert_array_equal(log.q[:, 0], [1, 4])
 
 
 def test_rows_out_of_order_are_sorted(file):

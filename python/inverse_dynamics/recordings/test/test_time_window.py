@@ -8,7 +8,6 @@ from command_line import fails
 from example_recordings import recording, table_of, write_table
 
 from inverse_dynamics import evaluate, read_evaluation, write_joint_logs
-from inverse_dynamics.errors import ArgumentError, BagError
 
 # The recordings have samples at 0, 0.004, ... 5.996 s after the first.
 
@@ -116,10 +115,3 @@ def test_too_few_samples_in_a_window_are_an_error_that_names_the_window(
     write_table(tmp_path / "table.csv", table_of(np.zeros((1500, 6))))
     command = ("evaluate", "table.csv", "--robot", "ur10_simulated", "--from", "1", "--to", end)
     fails(ids(*command), f"table.csv, from 1 s to {end} s: ")
-
-
-def test_what_is_no_time_is_an_error(bag):
-    with pytest.raises(ArgumentError, match=r"argument start: expected float \| None, got '1'"):
-        evaluate(bag, "ur10_simulated", start="1")
-    with pytest.raises(BagError, match="--from .*: expected a time in s since .*, got nan"):
-        evaluate(bag, "ur10_simulated", start=float("nan"))

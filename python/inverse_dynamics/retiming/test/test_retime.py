@@ -489,11 +489,3 @@ def test_wrong_paths_are_refused():
         retime(WAYPOINTS[:, :5], "ur10_simulated")
     with pytest.raises(UserError, match="two different waypoints"):
         retime(WAYPOINTS[:1], "ur10_simulated")
-
-
-def test_points_of_the_grid_may_be_few():
-    solver = load_robot("ur10_simulated").solver()
-    limits = MotionLimits(torque=LIMITS["ur10_simulated"])
-    coarse = retime_path(solver, JointPath.spline(WAYPOINTS), limits, RetimeOptions(points=100))
-    fine = retime_path(solver, JointPath.spline(WAYPOINTS), limits, RetimeOptions(points=2000))
-    assert coarse.duration == pytest.approx(fine.duration, rel=0.02)

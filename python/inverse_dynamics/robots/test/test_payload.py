@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-import threading
-
 import numpy as np
 import pytest
 from command_line import fails
-from example_robots import FRANKA, KDL, RIGID_BODY, UR10
-from simulation_arms import joint, link, robot
-from test_solver_parameters import efforts, planned, write
+from example_robots import FRANKA, RIGID_BODY, UR10
+from simulation_arms import joint, link, robot, write_robot
+from test_solver_parameters import efforts, planned
 
 from inverse_dynamics import Solver, errors
 from inverse_dynamics.terminal.values import payload
@@ -37,18 +35,6 @@ def arm(plugin: str = RIGID_BODY) -> Solver:
 
 def states(solver: Solver) -> list[np.ndarray]:
     return list(np.random.default_rng(0).normal(size=(3, 20, len(solver.joint_names))))
-
-
-@pytest.mark.parametrize("plugin", [RIGID_BODY, KDL])
-def test_a_point_mass_weighs_where_it_is(plugin):
-    solver = arm(plugin)
-    empty = solver.gravity_vector([0.0])
-    solver.set_payload("part", 2.0, [0.5, 0.0, 0.0])
-    added = solver.gravity_vector([0.0]) - empty
-    np.testing.assert_allclose(abs(added), 2.0 * 9.81 * 1.5, rtol=1e-12)
-    assert solver.remove_payload("part")
-    assert not solver.remove_payload("part")
-    np.testing.assert_array_equal(solver.gravity_vector([0.0]), empty)
 
 
 @pytest.mark.parametrize("make", [arm, lambda: Solver(UR10), lambda: Solver(FRANKA)])
@@ -147,32 +133,8 @@ def test_wrong_gravity_is_refused(numbers):
     np.testing.assert_array_equal(solver.gravity, [0, 0, -9.81])
 
 
-def test_threads_compute_with_one_body_or_the_other():
-    solver = Solver(UR10)
-    motion = states(solver)
-    expected = []
-    for mass in (1.0, 2.0):
-        solver.set_payload("part", mass)
-        expected.append(solver.torques(*motion).tobytes())
-    found, done = set(), threading.Event()
-
-    def compute() -> None:
-        while not done.is_set():
-            found.add(solver.torques(*motion).tobytes())
-
-    threads = [threading.Thread(target=compute) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for k in range(400):
-        solver.set_payload("part", 1.0 + k % 2)
-    done.set()
-    for thread in threads:
-        thread.join()
-    assert found <= set(expected)
-
-
 def made(directory, more):
-    return write(directory, ARM, "tip: tip\n" + more)
+    return write_robot(directory, ARM, "tip: tip\n" + more)
 
 
 POINT = "parameters:\n  payload:\n    mass: 2.0\n    center_of_mass: [0.5, 0, 0]\n"

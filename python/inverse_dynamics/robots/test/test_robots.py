@@ -102,13 +102,6 @@ def test_every_key_is_read(write, tmp_path):
     ]
 
 
-def test_four_keys_are_enough(write):
-    robot = load_robot(write(LEAST))
-    assert (robot.topic, robot.friction, robot.accelerations) == ("/joint_states", True, "auto")
-    assert (robot.gravity, robot.joints, robot.urdf) == (None, (), None)
-    assert robot.parameters == {}
-
-
 @pytest.mark.parametrize(
     ("line", "changed", "expected"),
     [
@@ -196,42 +189,18 @@ def test_missing_key_is_named(write, key):
 
 
 @pytest.mark.parametrize(
-    ("text", "expected"),
-    [("", "is empty; expected keys with values"), ("- 1\n", "expected keys with values, got a li")],
+    "path",
+    [
+        "~nobody_at_all/mine.yaml",
+        "x" * 5000 + ".yaml",
+        "a\0b.yaml",
+        "~nouser\0/x",
+        "~\ud800/x.yaml",
+    ],
 )
-def test_file_of_something_else_is_an_error(write, text, expected):
-    fails(write(text), expected)
-
-
-def test_binary_file_is_an_error(write):
-    file = write("")
-    file.write_bytes(b"\xff\xfe\x00\x01")
-    fails(file, "isn't")
-
-
-def test_missing_file_is_an_error(tmp_path):
-    fails(tmp_path / "mine.yaml", "no such file; expected a run configuration, or one of the names")
-
-
-@pytest.mark.parametrize("path", ["~nobody_at_all/mine.yaml", "x" * 5000 + ".yaml", "a\0b.yaml"])
 def test_a_path_that_can_not_be_is_an_error(path):
     with pytest.raises(RobotError, match="no such file; expected a run configuration"):
         load_robot(path)
-
-
-def test_unknown_name_lists_what_there_is():
-    with pytest.raises(RobotError) as caught:
-        load_robot("ur11")
-    assert "robot 'ur11': expected one of" in str(caught.value)
-    assert "ur10_real" in str(caught.value)
-
-
-def test_without_a_workspace_the_remedy_is_named(monkeypatch):
-    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    with pytest.raises(
-        PackageNotFoundError, match="not found: .*; install it, or source the workspace"
-    ):
-        load_robot("ur10_real")
 
 
 def test_in_a_workspace_without_the_data_it_is_named(monkeypatch, tmp_path):
@@ -247,10 +216,6 @@ def test_in_a_workspace_without_the_data_it_is_named(monkeypatch, tmp_path):
     )
 
 
-def test_the_projects_robots_are_there():
-    assert {"ur10_real", "panda_real", "ur10_simulated", "panda_simulated"} <= set(robot_names())
-
-
 @pytest.mark.parametrize("name", ["ur10_real", "panda_real", "ur10_simulated", "panda_simulated"])
 def test_the_projects_robots_are_complete(name):
     robot = load_robot(name)
@@ -258,12 +223,6 @@ def test_the_projects_robots_are_complete(name):
     assert robot.urdf.is_file()
     assert robot.source
     assert robot.joints
-
-
-@pytest.mark.parametrize("name", ["~nouser\0/x", "nouser\0", "~\ud800/x.yaml", "a\0.yaml"])
-def test_a_name_that_no_file_can_have_is_an_error(name):
-    with pytest.raises(RobotError, match=r"no such file; expected|expected one of"):
-        load_robot(name)
 
 
 def test_a_robot_is_a_value() -> None:

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from command_line import fails
 from example_robots import RIGID_BODY
-from simulation_arms import joint, link, pendulum, robot, two_links
+from simulation_arms import joint, link, pendulum, robot, two_links, write_robot
 
 from inverse_dynamics import Solver, load_robot, read_evaluation
 from inverse_dynamics.errors import ArgumentError, InvalidParameterError, ParameterMissingError
@@ -46,15 +46,6 @@ MASSLESS = robot(
 )
 
 
-def write(directory: Path, urdf: str, more: str = "", plugin: str = RIGID_BODY) -> Path:
-    (directory / "arm.urdf").write_text(urdf)
-    file = directory / "arm.yaml"
-    file.write_text(
-        f"schema: 1\nname: arm\ndescription: an arm\nplugin: {plugin}\nurdf: arm.urdf\n{more}"
-    )
-    return file
-
-
 def planned(directory: Path, joints: tuple[str, ...]) -> Path:
     """Three points, each joint at 0.1, 0.2, 0.3 rad, at rest."""
     kinds = ("position", "velocity", "acceleration")
@@ -74,7 +65,7 @@ def efforts(file: Path, name: str) -> np.ndarray:
 
 def test_locked_joints_of_the_configuration_and_of_the_option_reach_the_solver(ids, tmp_path):
     more = "tip: tip\nparameters:\n  locked_joints:\n    bend: 1.0\n"
-    arm = write(tmp_path, WITH_FINGER, more)
+    arm = write_robot(tmp_path, WITH_FINGER, more)
     plan = planned(tmp_path, ("swing", "wrist"))
     command = ("torques", plan, "--robot", arm)
     q = np.array([[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]])
@@ -91,9 +82,9 @@ def test_locked_joints_of_the_configuration_and_of_the_option_reach_the_solver(i
 
 def test_massless_links_can_be_allowed(ids, tmp_path):
     plan = planned(tmp_path, ("swing", "spin"))
-    arm = write(tmp_path, MASSLESS)
+    arm = write_robot(tmp_path, MASSLESS)
     fails(ids("torques", plan, "--robot", arm, "--out", "a.csv"), "ids: error: robot arm", "spin")
-    arm = write(tmp_path, MASSLESS, "parameters: {allow_massless: true, batch_threads: 2}\n")
+    arm = write_robot(tmp_path, MASSLESS, "parameters: {allow_massless: true, batch_threads: 2}\n")
     assert ids("torques", plan, "--robot", arm, "--out", "a.csv")[0] == 0
 
 
@@ -125,25 +116,25 @@ def test_malformed_option_is_told(ids, text, expected):
 
 
 def test_wrong_type_is_told_with_the_robot(ids, tmp_path):
-    arm = write(tmp_path, pendulum(), "parameters: {batch_threads: many}\n")
+    arm = write_robot(tmp_path, pendulum(), "parameters: {batch_threads: many}\n")
     plan = planned(tmp_path, ("swing",))
     result = ids("torques", plan, "--robot", arm, "--out", "a.csv")
     fails(result, "robot arm: parameter 'batch_threads'", "expected integer")
 
 
 def test_a_parameter_that_the_solver_does_not_know_is_told_with_the_robot(ids, tmp_path):
-    arm = write(tmp_path, pendulum(), "parameters: {batch_thread: 2}\n")
+    arm = write_robot(tmp_path, pendulum(), "parameters: {batch_thread: 2}\n")
     command = ("torques", planned(tmp_path, ("swing",)), "--out", "a.csv", "--robot")
     fails(ids(*command, arm), "robot arm: parameter 'batch_thread'", "batch_threads")
     fails(ids("robots", arm), "robot arm: parameter 'batch_thread'", "batch_threads")
-    arm = write(tmp_path, pendulum())
+    arm = write_robot(tmp_path, pendulum())
     result = ids(*command, arm, "--parameter", "locked_joint.a=1")
     fails(result, "robot arm: parameter 'locked_joint.a'")
 
 
 def test_simulation_says_that_it_does_not_use_them(tmp_path):
     arm = load_robot(
-        write(tmp_path, two_links(), "tip: tip\nparameters: {locked_joints: {a: 1}}\n")
+        write_robot(tmp_path, two_links(), "tip: tip\nparameters: {locked_joints: {a: 1}}\n")
     )
     from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 

@@ -114,27 +114,6 @@ def test_nothing_is_written_over_an_input_or_if_a_file_fails(tmp_path, monkeypat
     assert os.listdir(tmp_path) == ["in.yaml"]
 
 
-def test_older_files_stay_if_one_of_the_new_cant_be_put_in_place(tmp_path, monkeypatch):
-    out = tmp_path / "a.yaml"
-    SumFiles().save(out)
-    files = SumFiles.files(out, ("png",))
-    for file in files:
-        file.write_text("older")
-    replaced, calls = os.replace, []
-
-    def fail_late(source, target):
-        calls.append(target)
-        if len(calls) == len(files):
-            raise OSError(28, "No space left", str(target))
-        return replaced(source, target)
-
-    monkeypatch.setattr(os, "replace", fail_late)
-    with pytest.raises(OutputError, match="No space left"):
-        SumFiles().save(out, overwrite=True)
-    assert [file.read_text() for file in files] == ["older"] * len(files)
-    assert len(os.listdir(tmp_path)) == len(files)
-
-
 def test_its_text_has_ten_lines_at_most():
     assert repr(SumFiles()).split("\n") == [
         "SumFiles",

@@ -46,28 +46,6 @@ def test_warnings_of_mujoco_are_notes(capfd: pytest.CaptureFixture[str]) -> None
     assert capfd.readouterr() == ("", "")
 
 
-def test_inertia_that_breaks_the_triangle_inequality_is_kept() -> None:
-    moments = simulated("panda").model.body("fer_link4").inertia
-    expected = np.linalg.eigvalsh(
-        [
-            [0.00784585566, -0.00339591957, 0.00158704074],
-            [-0.00339591957, 0.00649543136, -0.00181477884],
-            [0.00158704074, -0.00181477884, 0.01003079917],
-        ]
-    )
-    assert expected[0] + expected[1] < expected[2]
-    np.testing.assert_allclose(np.sort(moments), expected, rtol=1e-12)
-
-
-def test_gravity_torque_of_a_pendulum() -> None:
-    # lying along x it falls about +y, so the motor holds it with -m g l
-    arm = SimulatedRobot.from_urdf(pendulum())
-    assert arm.torques(ZERO, ZERO, ZERO)[0, 0] == pytest.approx(-2 * G * 0.5, abs=1e-12)
-    assert arm.torques(ZERO, ZERO, ZERO + 1.0)[0, 0] == pytest.approx(
-        -2 * G * 0.5 + 2 * 0.25 + 0.02, abs=1e-12
-    )
-
-
 def test_payload_is_a_point_mass_in_the_frame_of_the_tip() -> None:
     urdf = robot(
         link("base"),

@@ -124,6 +124,5 @@ def test_models_that_mujoco_cannot_hold_are_refused(identified: Robot, tmp_path:
 
 def test_friction_that_a_solver_lacks_is_refused(tmp_path: Path) -> None:
     bare = load_robot(write_robot(tmp_path, pendulum()))
-    bare = replace(bare, plugin=RIGID_BODY)
     with pytest.raises(SimulationError, match="joint friction: expected a solver with friction"):
         simulate(bare, joint_friction="model")

@@ -38,7 +38,7 @@ positions: [[0], [-0.3], [0]]
 
 
 def robot(directory: Path, simulation: str = "", extra: str = "", urdf: str = "") -> Robot:
-    return load_robot(write_robot(directory, urdf or pendulum(), simulation, extra))
+    return load_robot(write_robot(directory, urdf or pendulum(), extra + simulation))
 
 
 def stored(name: str) -> Robot:

@@ -148,24 +148,6 @@ def test_effort_noise_has_the_colour_of_the_residuals() -> None:
     np.testing.assert_array_equal(sensors.record(motion(), 0).q, motion().q)
 
 
-def test_effort_noise_of_equal_period_is_residuals_as_they_are() -> None:
-    residuals = coloured()
-    noise = EffortNoise(residuals, 1e-3, stretch=0.5).at(TIME[:1000], np.random.default_rng(3))
-    centered = residuals - residuals.mean(0)
-    nearest = np.abs(noise[:, None] - centered[None]).max(2).min(1)
-    assert nearest.max() < 1e-9
-    # the stretches: of 500 samples each
-    follows = [np.abs(centered - one).max(1).argmin() for one in noise]
-    assert (np.diff(follows) % len(centered) == 1).mean() >= 998 / 999
-
-
-def test_effort_noise_between_residuals_is_interpolated() -> None:
-    noise = EffortNoise(coloured(500), 1e-2, stretch=1.0).at(TIME[:900], np.random.default_rng(3))
-    second = np.diff(noise, 2, axis=0)
-    kinks = np.abs(second).max(1) > 1e-9
-    assert kinks.mean() < 0.25  # at residuals, of which there is one per ten samples
-
-
 def test_efforts_are_late() -> None:
     sensors = Sensors(effort_delay=0.0125)
     recorded = sensors.record(motion(), 0)

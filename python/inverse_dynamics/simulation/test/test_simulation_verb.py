@@ -5,14 +5,13 @@ from __future__ import annotations
 
 import re
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from command_line import fails
 from simulation_arms import pendulum, two_links, write_robot
 
-from inverse_dynamics.cli import main
 from inverse_dynamics.excitation import excitation
 from inverse_dynamics.excitation.excitation import ExcitationOptions
 from inverse_dynamics.recordings.bags import read_joint_log
@@ -25,63 +24,51 @@ times: [0, 0.5, 1]
 positions: [[0], [-0.3], [0]]
 """
 
-SEARCHING = (
-    "ids: {}searching for an exciting one, which takes about a minute; --trajectory names one ...\n"
-)
+
+@pytest.fixture
+def arm(tmp_path):
+    """Arguments that name a robot, a trajectory and the output."""
+    (tmp_path / "motion.yaml").write_text(TRAJECTORY)
+    robot = write_robot(tmp_path, pendulum(), plugin="some_package/SomeSolver")
+    return ("simulate", "--robot", robot, "--trajectory", "motion.yaml", "--out", "bag")
 
 
 @pytest.fixture
-def arm(tmp_path: Path) -> list[str]:
-    """Arguments that name a robot and a trajectory."""
-    (tmp_path / "motion.yaml").write_text(TRAJECTORY)
-    robot = write_robot(tmp_path, pendulum())
-    return ["simulate", "--robot", str(robot), "--trajectory", str(tmp_path / "motion.yaml")]
+def made(ids, arm, tmp_path):
+    """What a command prints, and the settings that it writes."""
+
+    def run(options):
+        code, out, err = ids(*arm, *options.split())
+        assert (code, err) == (0, "")
+        return out, yaml.safe_load((tmp_path / "bag/simulation.yaml").read_text())
+
+    return run
 
 
-def settings(bag: Path) -> dict[str, object]:
-    return yaml.safe_load((bag / "simulation.yaml").read_text())
+def test_says_what_was_made(made):
+    out, _ = made("--rate 125")
+    assert "trajectory     1 s" in out
+    assert "recording      bag, /joint_states: 125 messages of 1 joint, 1 s at 125 Hz" in out
+    assert len(read_joint_log("bag")) == 125
 
 
-def test_says_what_was_made(
-    arm: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    bag = tmp_path / "bag"
-    assert main([*arm, "--out", str(bag), "--rate", "125"]) == 0
-    printed = capsys.readouterr()
-    assert "trajectory     1 s" in printed.out
-    assert (
-        f"recording      {bag}, /joint_states: 125 messages of 1 joint, 1 s at 125 Hz"
-        in printed.out
-    )
-    assert printed.err == ""
-    assert len(read_joint_log(bag)) == 125
-
-
-def test_says_that_efforts_are_torques_where_the_configuration_says_otherwise(
-    arm: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.parametrize("effort", ["torque", "auto", "current", "torque_without_gravity"])
+def test_says_that_efforts_are_torques_where_the_configuration_says_otherwise(made, arm, effort):
+    arm[2].write_text(f"{arm[2].read_text()}effort: {effort}\n")
+    out, _ = made("--rate 125")
     said = (
-        "note           efforts are recorded as torques, though the run configuration says {}: evaluate "
-        "them with --effort-is torque"
+        f"note           efforts are recorded as torques, though the run configuration says {effort}: "
+        "evaluate them with --effort-is torque"
     )
-    configuration = Path(arm[2])
-    text = configuration.read_text()
-    for effort in ("torque", "auto", "current", "torque_without_gravity"):
-        configuration.write_text(f"{text}effort: {effort}\n")
-        assert main([*arm, "--out", str(tmp_path / effort), "--rate", "125"]) == 0
-        noted = said.format(effort) in capsys.readouterr().out
-        assert noted == (effort in {"current", "torque_without_gravity"})
+    assert (said in out) == (effort in {"current", "torque_without_gravity"})
 
 
-def test_all_options_arrive(arm: list[str], tmp_path: Path) -> None:
-    bag = tmp_path / "bag"
-    options = (
+def test_all_options_arrive(made):
+    _, settings = made(
         "--rate 1000 --duration 0.5 --seed 4 --storage mcap --payload 0.5,0.1,0,0.2 --joint-friction 0.1 "
         "--gravity -1,0,-9 --noise 1e-4,1e-3,0.2 --quantisation 1e-5,1e-4,0.1 --drop 0.1 --repeat 0.2 "
         "--jitter 1e-4 --start-stamp 5 --no-table"
     )
-    assert main([*arm, "--out", str(bag), *options.split()]) == 0
-    made = settings(bag)
     expected = {
         "rate": 1000,
         "duration": 0.5,
@@ -96,128 +83,87 @@ def test_all_options_arrive(arm: list[str], tmp_path: Path) -> None:
         "jitter": 1e-4,
         "start_stamp": 5,
     }
-    assert {key: made[key] for key in expected} == expected
-    assert made["joint_friction"]["coulomb"] == [10.0]
-    log = read_joint_log(bag)
+    assert {key: settings[key] for key in expected} == expected
+    assert settings["joint_friction"]["coulomb"] == [10.0]
+    log = read_joint_log("bag")
     assert 420 < len(log) < 480
     assert 5e9 <= log.header_stamps[0] < 5.01e9
 
 
-def test_noise_of_an_evaluation_delay_and_rate_of_messages_arrive(
-    arm: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    result, bag = tmp_path / "result", tmp_path / "bag"
-    result.mkdir()
-    random = np.random.default_rng(0)
-    series = {"time": 0.02 * np.arange(300), "computed": np.zeros((300, 1))}
-    series |= {"measured": random.normal(size=(300, 1)), "kept": np.full(300, True)}
-    np.savez(result / "series.npz", **series)
-    options = "--rate 500 --effort-delay 0.01 --message-rate 50 --effort-noise"
-    assert main([*arm, "--out", str(bag), *options.split(), str(result)]) == 0
-    assert "50 messages of 1 joint, 1 s at 50 Hz" in capsys.readouterr().out
-    made = settings(bag)
-    assert made["effort_noise"] == str(result)
-    assert (made["effort_delay"], made["message_rate"]) == (0.01, 50)
-    log, truth = read_joint_log(bag), np.load(bag / "truth.npz")
+def test_noise_of_an_evaluation_delay_and_rate_of_messages_arrive(ids, made, arm, tmp_path):
+    (tmp_path / "result").mkdir()
+    measured = np.random.default_rng(0).normal(size=(300, 1))
+    series = {"time": 0.02 * np.arange(300), "measured": measured, "computed": 0 * measured}
+    np.savez(tmp_path / "result/series.npz", **series, kept=np.full(300, True))
+    out, settings = made("--rate 500 --effort-delay 0.01 --message-rate 50 --effort-noise result")
+    assert "50 messages of 1 joint, 1 s at 50 Hz" in out
+    assert settings["effort_noise"] == "result"
+    assert (settings["effort_delay"], settings["message_rate"]) == (0.01, 50)
+    log, truth = read_joint_log("bag"), np.load(tmp_path / "bag/truth.npz")
     assert np.std(log.effort - truth["effort"]) == pytest.approx(1.0, rel=0.3)
     # what is read must not be replaced
-    assert main([*arm, "--out", str(result), "--effort-noise", str(result)]) == 2
+    assert ids(*arm[:-1], "result", "--effort-noise", "result")[0] == 2
 
 
-def test_options_without_a_value_have_stated_defaults(arm: list[str], tmp_path: Path) -> None:
-    bag = tmp_path / "bag"
-    options = "--rate 125 --noise --quantisation --joint-friction --mount ceiling --payload 1"
-    assert main([*arm, "--out", str(bag), *options.split()]) == 0
-    made = settings(bag)
-    assert made["noise"] == {"position": 1e-5, "velocity": 1e-3, "effort": 0.1}
-    assert made["quantisation"] == {"position": 1e-5, "velocity": 1e-3, "effort": 0.01}
-    assert made["joint_friction"]["coulomb"] == [2.0]
-    assert made["gravity"] == [0, 0, 9.81]
-    assert made["payload"] == {"mass": 1.0, "center": [0.0, 0.0, 0.0]}
-
-
-def searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *options: str) -> Path:
-    """A recording whose motion a short search has found."""
-    monkeypatch.setattr(excitation, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
-    robot, bag = write_robot(tmp_path, two_links(), "", "tip: tip\n"), tmp_path / "bag"
-    command = ["simulate", "--robot", str(robot), "--rate", "125", "--duration", "0.2"]
-    assert main([*command, "--out", str(bag), *options]) == 0
-    return bag
-
-
-def test_optimise_stores_what_it_found(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    bag = searched(tmp_path, monkeypatch, "--optimise", "--seed", "1")
-    printed = capsys.readouterr()
-    assert re.search(
-        r"trajectory +0.2 of \d+ s, condition number of the base regressor", printed.out
+def test_options_without_a_value_have_stated_defaults(made):
+    _, settings = made(
+        "--rate 125 --noise --quantisation --joint-friction --mount ceiling --payload 1"
     )
-    assert printed.err == SEARCHING.format("")
-    found = yaml.safe_load((bag / "trajectory.yaml").read_text())
-    assert "seed 1" in found["source"]
+    assert settings["noise"] == {"position": 1e-5, "velocity": 1e-3, "effort": 0.1}
+    assert settings["quantisation"] == {"position": 1e-5, "velocity": 1e-3, "effort": 0.01}
+    assert settings["joint_friction"]["coulomb"] == [2.0]
+    assert settings["gravity"] == [0, 0, 9.81]
+    assert settings["payload"] == {"mass": 1.0, "center": [0.0, 0.0, 0.0]}
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        (("--optimise", "--seed", "1"), ""),
+        ((), "the run configuration names no trajectory: "),
+    ],
+)
+def test_a_search_is_announced_and_its_motion_stored(ids, tmp_path, monkeypatch, options, why):
+    monkeypatch.setattr(excitation, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
+    robot = write_robot(tmp_path, two_links(), "tip: tip\n")
+    command = ("simulate", "--robot", robot, "--rate", "125", "--duration", "0.2", "--out", "bag")
+    code, out, err = ids(*command, *options)
+    assert code == 0
+    assert err == (
+        f"ids: {why}searching for an exciting one, which takes about a minute; --trajectory names one ...\n"
+    )
+    assert re.search(r"trajectory +0.2 of \d+ s, condition number of the base regressor", out)
+    found = yaml.safe_load((tmp_path / "bag/trajectory.yaml").read_text())
+    assert ("seed 1" in found["source"]) == ("--seed" in options)
     assert np.ptp(found["positions"], axis=0).min() > 0.01
 
 
-def test_a_search_that_nobody_asked_for_is_announced(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    searched(tmp_path, monkeypatch)
-    why = "the run configuration names no trajectory: "
-    assert capsys.readouterr().err == SEARCHING.format(why)
-
-
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        (["--rate", "100"], "rate: expected one of 125, 500, 1000 Hz, got 100"),
-        (["--from-model"], "solver plugin 'some_package/SomeSolver'"),
-        (["--effort-noise", "no_result"], "no_result: expected a result of `ids evaluate`"),
-        (["--optimise"], "expected either a trajectory or a search for one"),
-        (["--trajectory", "no.yaml"], "no.yaml: can't be read"),
-        (["--robot", "no.yaml"], "no.yaml"),
+        (("--rate", "100"), "rate: expected one of 125, 500, 1000 Hz, got 100"),
+        (("--from-model",), "solver plugin 'some_package/SomeSolver'"),
+        (("--effort-noise", "no_result"), "no_result: expected a result of `ids evaluate`"),
+        (("--optimise",), "expected either a trajectory or a search for one"),
+        (("--trajectory", "no.yaml"), "no.yaml: can't be read"),
+        (("--robot", "no.yaml"), "no.yaml"),
+        (("--noise", "1"), "expected 3 numbers, separated by commas, got '1'"),
+        (("--payload", "1,2"), "expected 1 or 4 numbers, separated by commas, got '1,2'"),
+        (("--seed", "-1"), "expected an integer that isn't negative"),
+        (("--drop", "nan"), "expected a number, got 'nan'"),
+        (("--mount", "wall", "--gravity", "0,0,1"), "not allowed with"),
     ],
 )
-def test_mistakes_end_with_code_2_and_leave_nothing(
-    arm: list[str],
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    options: list[str],
-    text: str,
-) -> None:
-    bag = tmp_path / "bag"
-    assert main([*arm, "--out", str(bag), *options]) == 2
-    error = capsys.readouterr().err
-    assert text in error
-    assert error.count("\n") == 1
-    assert not bag.exists()
+def test_mistakes_are_told_in_one_line_and_leave_nothing(ids, arm, tmp_path, options, text):
+    result = ids(*arm, *options)
+    fails(result, text)
+    assert result[2].count("\n") == 1
+    assert not (tmp_path / "bag").exists()
 
 
-@pytest.mark.parametrize(
-    ("options", "text"),
-    [
-        (["--noise", "1"], "expected 3 numbers, separated by commas, got '1'"),
-        (["--payload", "1,2"], "expected 1 or 4 numbers, separated by commas, got '1,2'"),
-        (["--seed", "-1"], "expected an integer that isn't negative"),
-        (["--drop", "nan"], "expected a number, got 'nan'"),
-        (["--mount", "wall", "--gravity", "0,0,1"], "not allowed with"),
-    ],
-)
-def test_malformed_options_are_explained(
-    arm: list[str], capsys: pytest.CaptureFixture[str], options: list[str], text: str
-) -> None:
-    with pytest.raises(SystemExit) as stop:
-        main([*arm, "--out", "unused", *options])
-    assert stop.value.code == 2
-    assert text in capsys.readouterr().err
-
-
-def test_existing_output_is_refused_before_the_work(
-    arm: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_existing_output_is_refused_before_the_work(ids, arm, tmp_path):
     (tmp_path / "bag").mkdir()
     (tmp_path / "bag/notes.txt").write_text("mine")
-    for overwrite in ([], ["--overwrite"]):
-        assert main([*arm, "--out", str(tmp_path / "bag"), *overwrite]) == 2
-    assert "exists already" in capsys.readouterr().err
+    fails(ids(*arm), "exists already")
+    fails(ids(*arm, "--overwrite"), "won't be overwritten")
     assert (tmp_path / "bag/notes.txt").read_text() == "mine"

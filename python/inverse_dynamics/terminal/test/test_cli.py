@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 from command_line import fails
-from example_recordings import joint_log, recording
+from example_recordings import recording
 from example_robots import RIGID_BODY, UR10, URDF
 
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation
@@ -144,15 +144,6 @@ def test_a_lone_topic_of_another_name_is_taken_and_reported(ids, tmp_path):
     code, out, _ = ids(*command, "--topic", "/arm/joint_states", "--out", "named")
     assert code == 0
     assert said not in out
-
-
-def test_no_figures_is_short_for_figures_none(ids, bag, tmp_path):
-    evaluate = ("evaluate", bag, "--robot", "ur10_simulated", *RAW, "--out", "out")
-    code, out, _ = ids(*evaluate, "--no-figures")
-    assert code == 0
-    assert "figure" not in out
-    assert list((tmp_path / "out").glob("torques.*")) == []
-    fails(ids(*evaluate, "--no-figures", "--figures", "svg"), "not allowed with argument")
 
 
 def test_an_earlier_result_is_replaced_and_said(ids, bag, tmp_path):
@@ -341,20 +332,6 @@ def test_without_a_verb_the_help_is_shown(ids):
     assert "start here:" in err
 
 
-def test_a_short_recording_says_so(ids, tmp_path):
-    log = joint_log(1, 6, joint_names=("a", "b", "c", "d", "e", "f"))
-    write_joint_logs(tmp_path / "bag", {log.topic: log})
-    names = ",".join(log.joint_names)
-    fails(ids("evaluate", "bag", "--robot", "ur10_simulated", "--joints", names), "bag: /joint_st")
-
-
-def test_robots_lists_them_with_a_line_each(ids):
-    code, out, _ = ids("robots")
-    assert code == 0
-    assert re.search(r"^ur10_real +Real UR10", out, re.MULTILINE)
-    assert re.search(r"^panda_simulated ", out, re.MULTILINE)
-
-
 def test_robots_shows_one(ids):
     code, out, _ = ids("robots", "panda_real")
     assert code == 0
@@ -362,12 +339,6 @@ def test_robots_shows_one(ids):
         assert part in out
     assert re.search(r"^urdf +/\S+/urdf/panda\.urdf$", out, re.MULTILINE)  # can be copied
     fails(ids("robots", "ur11"), "expected one of")
-
-
-def test_robots_shows_either_one_robot_or_solvers(ids):
-    fails(
-        ids("robots", "panda_real", "--plugins"), "--plugins: not allowed with argument NAME|FILE"
-    )
 
 
 def test_help_is_a_verb_too(ids):

@@ -111,7 +111,7 @@ def test_simulate_excite_and_torques(found, ids, tmp_path, monkeypatch):
     assert result["messages"] == 500
     table = "time,position.swing,velocity.swing,acceleration.swing\n0,0,0,0\n1,1,0,0\n"
     (tmp_path / "plan.csv").write_text(table)
-    out = ("--robot", robot, "--plugin", RIGID_BODY, "--out", "out.csv")
+    out = ("--robot", robot, "--out", "out.csv")
     result = found("torques`", "torques", "plan.csv", *out, written=["out.csv"])
     assert result["joints"][0]["joint"] == "swing"
 
