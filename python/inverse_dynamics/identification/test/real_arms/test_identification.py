@@ -23,7 +23,6 @@ from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.identification.findings import motion_findings
 from inverse_dynamics.identification.knowledge import independent_samples, intervals, knowledge
 from inverse_dynamics.identification.result import COLUMNS, LAWS, IdentificationError
-from inverse_dynamics.identification.tables import delay_told
 from inverse_dynamics.identification.temperature import at_temperature
 from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.robots.descriptions import read_description
