@@ -113,9 +113,7 @@ void zeroPhase(Columns samples, double cutoff_over_sampling, int order) {
 }  // namespace
 
 double lowPassGain(double frequency, double cutoff, double sampling_frequency, int order) {
-  if (frequency >= sampling_frequency / 2) {
-    return 0.0;
-  }
+  if (frequency >= sampling_frequency / 2) return 0.0;
   const double ratio =
       std::tan(kPi * frequency / sampling_frequency) / std::tan(kPi * cutoff / sampling_frequency);
   return 1.0 / (1.0 + std::pow(ratio * ratio, order));
@@ -254,9 +252,7 @@ struct Grid : Piece {
 Eigen::Vector4d cubicWeights(const Eigen::Vector4d& at, double t) {
   Eigen::Vector4d weights = Eigen::Vector4d::Ones();
   for (Index i = 0; i < 4; ++i) {
-    for (Index k = 0; k < 4; ++k) {
-      weights[i] *= i == k ? 1.0 : (t - at[k]) / (at[i] - at[k]);
-    }
+    for (Index k = 0; k < 4; ++k) weights[i] *= i == k ? 1.0 : (t - at[k]) / (at[i] - at[k]);
   }
   return weights;
 }
@@ -354,9 +350,7 @@ std::vector<Grid> gridsOf(const SampleReport& found, const SampleRules& rules) {
   }
   std::vector<Grid> grids;
   grids.reserve(found.pieces.size());
-  for (const Piece& piece : found.pieces) {
-    grids.emplace_back(piece, found.usual_period);
-  }
+  for (const Piece& piece : found.pieces) grids.emplace_back(piece, found.usual_period);
   return grids;
 }
 
@@ -416,9 +410,7 @@ CutoffChoice choiceOf(const SampleTable& table, const std::vector<Grid>& grids,
     (grid.count < shortest ? left_out : kept) += static_cast<double>(grid.count);
   }
   VelocitySpectra spectra = spectraOf(table, grids, shortest, sampling_frequency);
-  if (spectra.moving * kept < left_out) {
-    spectra = spectraOf(table, grids, 0, sampling_frequency);
-  }
+  if (spectra.moving * kept < left_out) spectra = spectraOf(table, grids, 0, sampling_frequency);
   return cutoffOf(spectra, static_cast<double>(longest - 1) / sampling_frequency,
                   sampling_frequency, order);
 }
@@ -454,9 +446,7 @@ class Interpolation {
 
   /// Samples behind the last piece.
   void finish() {
-    for (; next_ < table_.size(); ++next_) {
-      table_.qdd.col(next_) = last_;
-    }
+    for (; next_ < table_.size(); ++next_) table_.qdd.col(next_) = last_;
   }
 
  private:
@@ -493,9 +483,7 @@ FilterChoice filterOf(SampleTable& table, const SampleReport& found,
     filter.choice = choiceOf(table, grids, filter.sampling_frequency, filter.order);
     filter.cutoff = filter.choice.cutoff;
   }
-  for (const Grid& grid : grids) {
-    requireFilter(1.0 / grid.period, filter.cutoff, filter.order);
-  }
+  for (const Grid& grid : grids) requireFilter(1.0 / grid.period, filter.cutoff, filter.order);
   Interpolation interpolation(table);
   for (const Grid& grid : grids) {
     const DerivativeRoom room(grid.count, 1.0 / grid.period, filter.cutoff, filter.order);

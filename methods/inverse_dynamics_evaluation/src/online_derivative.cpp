@@ -39,9 +39,7 @@ OnlineDerivative::Step OnlineDerivative::update(std::int64_t stamp,
     return Step::kStarted;
   }
   const double dt = static_cast<double>(stamp - last_) * 1e-9;
-  if (dt == 0.0) {
-    return Step::kRepeated;
-  }
+  if (dt == 0.0) return Step::kRepeated;
   if (dt < 0.0 || dt > longest_gap_) {
     start(stamp, u);
     return dt < 0.0 ? Step::kWentBack : Step::kGap;

@@ -63,9 +63,7 @@ void markFaults(SampleTable& table) {
 struct Timing {
   // s; of sample `k`, which is fresh sample number `i`.
   double operator()(Index k, Index i, double stamp) const {
-    if (base == TimeBase::kStamps || fresh < 2) {
-      return stamp;
-    }
+    if (base == TimeBase::kStamps || fresh < 2) return stamp;
     const double share = base == TimeBase::kRegular
                              ? static_cast<double>(k) / static_cast<double>(count - 1)
                              : static_cast<double>(i) / static_cast<double>(fresh - 1);
@@ -229,9 +227,7 @@ class Distances {
 // What is left to be done about stamps that don't increase.
 void checkStamps(const Census& census, const SampleRules& rules, TimeBase base) {
   const Index count = census.counts.non_increasing;
-  if (base != TimeBase::kStamps || count == 0) {
-    return;
-  }
+  if (base != TimeBase::kStamps || count == 0) return;
   const std::string found = std::to_string(count) + " of " + std::to_string(census.counts.all) +
                             " that don't, the first in sample " +
                             std::to_string(census.backward.sample + 1) +

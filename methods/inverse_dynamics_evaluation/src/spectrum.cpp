@@ -183,9 +183,7 @@ std::vector<Index> segmentBegins(Index samples, Index length) {
   const Index half = std::max<Index>(length / 2, 1);
   const Index steps = (spare + half - 1) / half;
   std::vector<Index> begins = {0};
-  for (Index s = 1; s <= steps; ++s) {
-    begins.push_back(s * spare / steps);
-  }
+  for (Index s = 1; s <= steps; ++s) begins.push_back(s * spare / steps);
   return begins;
 }
 
@@ -227,9 +225,7 @@ void SpectrumSums::divideIntoBands(Index half, double step) {
 
 void SpectrumSums::add(const Stretch& stretch) {
   const Index samples = stretch.qd.cols();
-  if (samples < kLeastStretch) {
-    return;
-  }
+  if (samples < kLeastStretch) return;
   const Eigen::ArrayXd weight = activity(stretch, sampling_frequency_);
   moving_ += weight.sum();
   samples_ += static_cast<double>(samples);
