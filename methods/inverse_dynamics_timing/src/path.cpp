@@ -86,9 +86,7 @@ MatrixXd curvatures(const Way& way) {
     diagonal[k] -= factor * step(k - 1);
     M.col(k) -= factor * M.col(k - 1);
   }
-  for (Index k = m - 2; k > 0; --k) {
-    M.col(k) = (M.col(k) - step(k) * M.col(k + 1)) / diagonal[k];
-  }
+  for (Index k = m - 2; k > 0; --k) M.col(k) = (M.col(k) - step(k) * M.col(k + 1)) / diagonal[k];
   return M;
 }
 
