@@ -85,7 +85,6 @@ std::optional<BodyDefect> defectOf(const RigidBody& body) {
   return inertiaDefect(body);
 }
 
-// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
 Payload::~Payload() = default;
 
 void Payload::setPayload(const std::string& name, const RigidBody& body) {

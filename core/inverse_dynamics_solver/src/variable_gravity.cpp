@@ -24,7 +24,6 @@ void requireModerate(const char* method, const char* argument, const Eigen::Vect
 
 }  // namespace
 
-// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
 VariableGravity::~VariableGravity() = default;
 
 auto VariableGravity::required(const char* method) const -> BaseMotion {
