@@ -13,7 +13,6 @@
 #include "checks.hpp"
 #include "figures.hpp"
 #include "filtering.hpp"
-#include "pi.hpp"
 #include "spectrum.hpp"
 
 namespace inverse_dynamics_evaluation {
@@ -38,11 +37,11 @@ struct Section {
 // Analog poles lie on a circle of radius w_c; the bilinear transformation s = (z - 1) / (z + 1)
 // with w_c = tan(pi f_c / f_s) takes them to the digital filter.
 std::vector<Section> butterworth(int order, double cutoff_over_sampling) {
-  const double w = std::tan(kPi * cutoff_over_sampling);
+  const double w = std::tan(M_PI * cutoff_over_sampling);
   std::vector<Section> sections;
   for (int i = 0; i < order / 2; ++i) {
     // s^2 + 2 cos(theta) w s + w^2, theta the angle of the pole to the negative real axis
-    const double theta = kPi * (order - 1 - 2 * i) / (2.0 * order);
+    const double theta = M_PI * (order - 1 - 2 * i) / (2.0 * order);
     const double damping = 2.0 * std::cos(theta) * w;
     const double a0 = 1.0 + damping + w * w;
     const double b = w * w / a0;
@@ -114,8 +113,8 @@ void zeroPhase(Columns samples, double cutoff_over_sampling, int order) {
 
 double lowPassGain(double frequency, double cutoff, double sampling_frequency, int order) {
   if (frequency >= sampling_frequency / 2) return 0.0;
-  const double ratio =
-      std::tan(kPi * frequency / sampling_frequency) / std::tan(kPi * cutoff / sampling_frequency);
+  const double ratio = std::tan(M_PI * frequency / sampling_frequency) /
+                       std::tan(M_PI * cutoff / sampling_frequency);
   return 1.0 / (1.0 + std::pow(ratio * ratio, order));
 }
 
@@ -175,7 +174,7 @@ MatrixXd beyondEnd(const ConstColumns& samples, Index count) {
   const Eigen::ArrayXd inside = Eigen::ArrayXd::LinSpaced(fit, 0.0, (length - 1.0) / length);
   const Eigen::ArrayXd outside =
       Eigen::ArrayXd::LinSpaced(count, -1.0 / length, -static_cast<double>(count) / length);
-  const Eigen::VectorXd weight = (kPi / 2.0 * inside).cos().square().square().matrix();
+  const Eigen::VectorXd weight = (M_PI / 2.0 * inside).cos().square().square().matrix();
   const MatrixXd weighted = weight.asDiagonal() * powers(inside);
   const Eigen::Matrix4d normal = weighted.transpose() * powers(inside);
   const Eigen::Matrix<double, kCoefficients, Eigen::Dynamic> coefficients =

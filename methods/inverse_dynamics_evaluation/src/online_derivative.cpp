@@ -7,7 +7,6 @@
 #include <string>
 
 #include "inverse_dynamics_evaluation/error.hpp"
-#include "pi.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -26,7 +25,7 @@ double requirePositive(const char* what, double value) {
 }  // namespace
 
 OnlineDerivative::OnlineDerivative(Eigen::Index size, double cutoff, double longest_gap)
-    : w_(2.0 * kPi * requirePositive("cut-off [Hz]", cutoff)),
+    : w_(2.0 * M_PI * requirePositive("cut-off [Hz]", cutoff)),
       longest_gap_(requirePositive("longest gap [s]", longest_gap)),
       input_(Eigen::VectorXd::Zero(size)),
       value_(Eigen::VectorXd::Zero(size)),
