@@ -2,7 +2,8 @@
 
 #include "live_load.hpp"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
+#include <chain_dynamics/joint_frame.hpp>
 #include <chrono>
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
@@ -28,15 +29,6 @@ constexpr std::chrono::milliseconds kStep(10);
   throw InvalidParameterValueException(errorText("gravity", "the solver's gravity can't change",
                                                  "a solver with the capability VariableGravity",
                                                  plugin, "use another solver, or set ids.gravity"));
-}
-
-// Turns about the fixed axes x, y, z, in this order.
-Eigen::Matrix3d rotation(const std::vector<double>& rpy) {
-  using Eigen::AngleAxisd;
-  using Eigen::Vector3d;
-  return (AngleAxisd(rpy[2], Vector3d::UnitZ()) * AngleAxisd(rpy[1], Vector3d::UnitY()) *
-          AngleAxisd(rpy[0], Vector3d::UnitX()))
-      .toRotationMatrix();
 }
 
 }  // namespace
@@ -79,7 +71,8 @@ void LiveLoad::use(std::shared_ptr<PayloadRamp> ramp, const LiveRobot& robot) {
 void LiveLoad::openImu() {
   imu_.emplace(params_.use == "orientation" ? GravityFromImu::Source::kOrientation
                                             : GravityFromImu::Source::kAcceleration,
-               rotation(params_.rpy), params_.time_constant, variable_->gravity());
+               chain_dynamics::rotationFromRollPitchYaw(Eigen::Vector3d(params_.rpy.data())),
+               params_.time_constant, variable_->gravity());
 }
 
 void LiveLoad::takeGravity(const Vector3Stamped& message) {
