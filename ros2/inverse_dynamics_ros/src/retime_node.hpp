@@ -12,8 +12,8 @@
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
 
-#include "node_solver.hpp"
 #include "retiming.hpp"
+#include "robot_parameters.hpp"
 
 namespace inverse_dynamics_ros {
 
