@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "interrupted.hpp"
 #include "output_bag.hpp"
 #include "robot_parameters.hpp"
 #include "run_program.hpp"
