@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/payload.hpp"
 
-#include <cmath>
 #include <optional>
 #include <string>
 

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Core>
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <set>

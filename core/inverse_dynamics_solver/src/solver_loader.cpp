@@ -9,7 +9,6 @@
 #include <mutex>
 #include <pluginlib/class_loader.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "ament_index.hpp"

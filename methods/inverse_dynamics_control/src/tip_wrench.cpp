@@ -3,7 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/kinematics.hpp>

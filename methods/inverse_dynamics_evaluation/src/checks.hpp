@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <cstddef>
 #include <string>
 
 #include "inverse_dynamics_evaluation/error.hpp"

@@ -2,7 +2,6 @@
 
 #include "inverse_dynamics_evaluation/run_configuration.hpp"
 
-#include <algorithm>
 #include <chain_dynamics/text.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <optional>

@@ -14,7 +14,6 @@
 #include <set>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include "inverse_dynamics_evaluation/accelerations.hpp"

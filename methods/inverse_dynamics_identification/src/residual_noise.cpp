@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_identification/residual_noise.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>

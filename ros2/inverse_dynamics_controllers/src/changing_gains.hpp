@@ -8,7 +8,6 @@
 #include <memory>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "latest_value.hpp"

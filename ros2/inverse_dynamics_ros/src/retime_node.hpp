@@ -9,7 +9,6 @@
 #include <exception>
 #include <inverse_dynamics_msgs/srv/retime.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
-#include <memory>
 #include <rclcpp/rclcpp.hpp>
 
 #include "retiming.hpp"
