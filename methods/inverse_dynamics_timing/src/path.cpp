@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 [[noreturn]] void refusePath(const std::string& what, const std::string& expected,
                              const std::string& got, const std::string& remedy = "") {
-  throw inverse_dynamics_solver::InvalidParameterValueException(
-      inverse_dynamics_solver::errorText("path", what, expected, got, remedy));
+  throw inverse_dynamics_solver::InvalidParameterValueException("path", what, expected, got,
+                                                                remedy);
 }
 
 /// Waypoints without repetitions, and the path's parameter at each.

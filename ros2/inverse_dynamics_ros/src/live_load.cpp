@@ -11,7 +11,6 @@
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "overridable.hpp"
 
@@ -19,16 +18,15 @@ namespace inverse_dynamics_ros {
 namespace {
 
 using geometry_msgs::msg::Vector3Stamped;
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::VariableGravity;
 using sensor_msgs::msg::Imu;
 
 constexpr std::chrono::milliseconds kStep(10);
 [[noreturn]] void throwUnchangeable(const std::string& plugin) {
-  throw InvalidParameterValueException(errorText("gravity", "the solver's gravity can't change",
-                                                 "a solver with the capability VariableGravity",
-                                                 plugin, "use another solver, or set ids.gravity"));
+  throw InvalidParameterValueException("gravity", "the solver's gravity can't change",
+                                       "a solver with the capability VariableGravity", plugin,
+                                       "use another solver, or set ids.gravity");
 }
 
 }  // namespace
@@ -80,8 +78,8 @@ void LiveLoad::takeGravity(const Vector3Stamped& message) {
     inverse_dynamics_control::requireFrame(message.header.frame_id, robot_.root, "root");
     if (imus_ != nullptr) {
       throw InvalidParameterValueException(
-          errorText("gravity", "of another source", "nothing", "a message",
-                    "gravity comes from the IMU: set gravity_from_imu.use to nothing"));
+          "gravity", "of another source", "nothing", "a message",
+          "gravity comes from the IMU: set gravity_from_imu.use to nothing");
     }
     if (variable_ == nullptr) throwUnchangeable(robot_.plugin);
     const Eigen::Vector3d gravity(message.vector.x, message.vector.y, message.vector.z);
