@@ -25,7 +25,6 @@ constexpr double kRounding = 1e-11;
 constexpr double kLeastMargin = 1e-10;
 constexpr Index kMostJoints = 6;
 constexpr int kMostBoxes = 200000;
-constexpr double kPi = 3.14159265358979323846;
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostJoints, kMostJoints>;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostJoints, 1>;
@@ -56,7 +55,7 @@ class Block {
   /// Whether it is definite for all angles. Each box that is looked at counts down `boxes`.
   bool isDefinite(int& boxes) const {
     const auto k = static_cast<Index>(angles_.size());
-    std::vector<Box> open = {{Vector::Zero(k), Vector::Constant(k, kPi)}};
+    std::vector<Box> open = {{Vector::Zero(k), Vector::Constant(k, M_PI)}};
     while (!open.empty()) {
       Box box = std::move(open.back());
       open.pop_back();

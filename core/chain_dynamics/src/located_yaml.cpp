@@ -3,7 +3,6 @@
 #include "located_yaml.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>

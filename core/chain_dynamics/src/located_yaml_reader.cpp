@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "chain_dynamics/error.hpp"
+#include "chain_dynamics/text.hpp"
 #include "located_yaml.hpp"
 #include "utf8.hpp"
 
@@ -40,17 +41,6 @@ int lineAt(const std::string& text, std::size_t i) {
 bool isAllowed(std::uint32_t code) {
   return code == '\t' || code == '\n' || code == '\r' || (code >= 0x20 && code < 0x7F) ||
          code == 0x85 || (code >= 0xA0 && code != 0xFFFE && code != 0xFFFF);
-}
-
-/// Where the first character that isn't UTF-8 begins.
-std::size_t firstNotUtf8(const std::string& text) {
-  std::size_t i = 0;
-  while (i < text.size()) {
-    const Character character = characterAt(text, i);
-    if (character.size == 0) break;
-    i += character.size;
-  }
-  return i;
 }
 
 /// From a place in a text to the next blank or bracket.

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -126,9 +125,7 @@ std::string jointLines(const Model& model, std::size_t j) {
   std::string text = "  - name: " + quoted(joint.name) + "\n    type: " + typeText(joint.type) +
                      "\n    placement: {" + pose(joint.placement) + ", axis: [0, 0, 1]}\n" +
                      limitsLine(joint.limits);
-  if (joint.rotor_inertia != 0) {
-    text += "    rotor_inertia: " + number(joint.rotor_inertia) + "\n";
-  }
+  if (joint.rotor_inertia != 0) text += "    rotor_inertia: " + number(joint.rotor_inertia) + "\n";
   text += entry("drive_gain", model.drive_gains);
   if (!model.friction.empty()) text += frictionLine(model.friction[j]);
   if (model.coupling.size() > 0 && !model.friction.empty()) {

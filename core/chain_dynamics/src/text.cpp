@@ -112,6 +112,16 @@ std::string printable(const std::string& text, std::size_t longest) {
   return result;
 }
 
+std::size_t firstNotUtf8(const std::string& text) {
+  std::size_t i = 0;
+  while (i < text.size()) {
+    const Character character = characterAt(text, i);
+    if (character.size == 0) break;
+    i += character.size;
+  }
+  return i;
+}
+
 bool isPrintable(const std::string& text) { return printable(text, text.size()) == text; }
 
 std::string numberText(double value, int digits) {

@@ -99,12 +99,8 @@ Path pathBetween(const RobotDescription& robot, std::size_t root, std::size_t ti
     down.pop_back();
   }
   Path path;
-  for (const std::size_t j : up) {
-    path.push_back({j, true});
-  }
-  for (auto j = down.rbegin(); j != down.rend(); ++j) {
-    path.push_back({*j, false});
-  }
+  for (const std::size_t j : up) path.push_back({j, true});
+  for (auto j = down.rbegin(); j != down.rend(); ++j) path.push_back({*j, false});
   return path;
 }
 

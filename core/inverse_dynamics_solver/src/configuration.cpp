@@ -79,10 +79,10 @@ std::function<std::optional<double>(const std::string&)> lockedPositions(
           prefix = configuration.fullName("locked_joints.")](const std::string& joint) {
     const auto position = parameters.get<double>(prefix + joint);
     if (position && !std::isfinite(*position)) {
-      throw InvalidParameterValueException(
-          errorText("parameter '" + prefix + joint + "'", "wrong value",
-                    "a finite position [rad; prismatic m]", std::to_string(*position),
-                    "give the position at which the joint is held"));
+      throw InvalidParameterValueException("parameter '" + prefix + joint + "'", "wrong value",
+                                           "a finite position [rad; prismatic m]",
+                                           std::to_string(*position),
+                                           "give the position at which the joint is held");
     }
     return position;
   };
@@ -133,8 +133,8 @@ class RotorInertia {
 
 void Configuration::refuse(const std::string& name, const std::string& expected,
                            const std::string& got, const std::string& remedy) const {
-  throw InvalidParameterValueException(
-      errorText("parameter '" + fullName(name) + "'", "wrong value", expected, got, remedy));
+  throw InvalidParameterValueException("parameter '" + fullName(name) + "'", "wrong value",
+                                       expected, got, remedy);
 }
 
 Configuration readConfiguration(const Parameters& parameters, const std::string& param_namespace,
@@ -165,9 +165,9 @@ Configuration readConfiguration(const Parameters& parameters, const std::string&
 chain_dynamics::Chain chainFromDescription(const Configuration& configuration) {
   if (configuration.robot_description.empty()) {
     throw ParameterUninitializedException(
-        errorText("robot description", "missing", "the text of a URDF", "nothing",
-                  "pass it to initialize() as third argument, or set the parameter "
-                  "'robot_description' (without namespace)"));
+        "robot description", "missing", "the text of a URDF", "nothing",
+        "pass it to initialize() as third argument, or set the parameter "
+        "'robot_description' (without namespace)");
   }
   chain_dynamics::UrdfOptions options;
   options.root = configuration.root;

@@ -7,18 +7,17 @@
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
-// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
 Energies::~Energies() = default;
 
 namespace {
 
 void require(bool has_energies, const char* method) {
   if (has_energies) return;
-  throw Exception(errorText(method, "the robot has no energies",
-                            "a symmetric inertia matrix, and gravity torques that are the gradient "
-                            "of a potential",
-                            "parameters that differ from row to row",
-                            "use a solver of a robot description, or ask hasEnergies() first"));
+  throw Exception(method, "the robot has no energies",
+                  "a symmetric inertia matrix, and gravity torques that are the gradient "
+                  "of a potential",
+                  "parameters that differ from row to row",
+                  "use a solver of a robot description, or ask hasEnergies() first");
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
-// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
 ExternalWrench::~ExternalWrench() = default;
 
 namespace {

@@ -31,9 +31,9 @@ void MethodCall::throwMismatch(const char* argument, Eigen::Index rows, Eigen::I
 
 void MethodCall::throwMismatch(const char* argument, const std::string& expected,
                                const std::string& got) const {
-  throw SizeMismatchException(errorText(std::string(method_) + ": argument " + argument,
-                                        "wrong size", expected, got,
-                                        "the joints are " + chain_dynamics::joined(jointNames())));
+  throw SizeMismatchException(std::string(method_) + ": argument " + argument, "wrong size",
+                              expected, got,
+                              "the joints are " + chain_dynamics::joined(jointNames()));
 }
 
 void MethodCall::whileUnchanged(const std::function<void()>& compute) const {
@@ -44,17 +44,17 @@ void MethodCall::whileUnchanged(const std::function<void()>& compute) const {
 
 void MethodCall::requirePositions() const {
   if (!frictionDependsOnPosition(solver_)) return;
-  throw SizeMismatchException(errorText(
+  throw SizeMismatchException(
       std::string(method_) + ": argument q", "missing",
       std::to_string(joints()) + " numbers, as friction depends on the position", "0",
       "call getFrictionVector(q, qd), in Python friction_vector(qd, q=q); the joints are " +
-          chain_dynamics::joined(jointNames())));
+          chain_dynamics::joined(jointNames()));
 }
 
 void MethodCall::throwUnphysical() const {
-  throw Exception(errorText(method_, "the inertia matrix isn't that of rigid bodies",
-                            "a solver whose inertiaIsPhysical() is true", "one where it is false",
-                            "use a solver of a robot description"));
+  throw Exception(method_, "the inertia matrix isn't that of rigid bodies",
+                  "a solver whose inertiaIsPhysical() is true", "one where it is false",
+                  "use a solver of a robot description");
 }
 
 }  // namespace v2

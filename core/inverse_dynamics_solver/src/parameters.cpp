@@ -119,9 +119,9 @@ std::optional<T> Parameters::get(const std::string& name) const {
   if (!value) return std::nullopt;
   std::optional<T> converted = convert<T>(*value);
   if (!converted) {
-    throw InvalidParameterValueException(errorText("parameter '" + name + "'", "wrong type",
-                                                   typeName(ParameterValue(T())), typeName(*value),
-                                                   "correct it where it is set"));
+    throw InvalidParameterValueException("parameter '" + name + "'", "wrong type",
+                                         typeName(ParameterValue(T())), typeName(*value),
+                                         "correct it where it is set");
   }
   return converted;
 }
@@ -130,9 +130,9 @@ template <class T>
 T Parameters::require(const std::string& name) const {
   std::optional<T> value = get<T>(name);
   if (!value) {
-    throw ParameterUninitializedException(errorText("parameter '" + name + "'", "not set",
-                                                    typeName(ParameterValue(T())), "nothing",
-                                                    "set it; it has no default"));
+    throw ParameterUninitializedException("parameter '" + name + "'", "not set",
+                                          typeName(ParameterValue(T())), "nothing",
+                                          "set it; it has no default");
   }
   return *std::move(value);
 }
@@ -156,9 +156,9 @@ void throwUnsupportedType(const std::string& name, int type) {
   const std::string got = type == static_cast<int>(ParameterType::kByteArray)
                               ? "list of bytes"
                               : "type number " + std::to_string(type);
-  throw InvalidParameterValueException(errorText(
-      "parameter '" + name + "'", "wrong type", "bool, integer, double, string, or a list of these",
-      got, "correct it where it is set"));
+  throw InvalidParameterValueException("parameter '" + name + "'", "wrong type",
+                                       "bool, integer, double, string, or a list of these", got,
+                                       "correct it where it is set");
 }
 
 }  // namespace detail

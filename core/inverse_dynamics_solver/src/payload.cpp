@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/payload.hpp"
 
-#include <cmath>
 #include <optional>
 #include <string>
 
@@ -85,19 +84,18 @@ std::optional<BodyDefect> defectOf(const RigidBody& body) {
   return inertiaDefect(body);
 }
 
-// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
 Payload::~Payload() = default;
 
 void Payload::setPayload(const std::string& name, const RigidBody& body) {
   jointsFor("setPayload");
   if (name.empty() || !chain_dynamics::isPrintable(name)) {
-    throw InvalidParameterValueException(errorText("setPayload: argument name", "wrong value",
-                                                   "UTF-8 text, not empty", "'" + name + "'",
-                                                   "it names the body for removePayload()"));
+    throw InvalidParameterValueException("setPayload: argument name", "wrong value",
+                                         "UTF-8 text, not empty", "'" + name + "'",
+                                         "it names the body for removePayload()");
   }
   if (const auto defect = defectOf(body)) {
-    throw InvalidParameterValueException(errorText("setPayload: body '" + name + "'", defect->field,
-                                                   defect->expected, defect->got, defect->remedy));
+    throw InvalidParameterValueException("setPayload: body '" + name + "'", defect->field,
+                                         defect->expected, defect->got, defect->remedy);
   }
   changePayloads([&](Payloads& bodies) { bodies[name] = body; });
 }

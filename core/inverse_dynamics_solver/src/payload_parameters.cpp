@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
-#include <cmath>
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "chain_dynamics/joint_frame.hpp"
 #include "chain_dynamics/text.hpp"
 #include "inverse_dynamics_solver/payload.hpp"
 
@@ -43,13 +41,6 @@ Eigen::Matrix3d inertiaOf(const std::optional<Numbers>& numbers) {
   return inertia;
 }
 
-Eigen::Matrix3d rotationOf(const Eigen::Vector3d& rpy) {
-  using Turn = Eigen::AngleAxisd;
-  return (Turn(rpy.z(), Eigen::Vector3d::UnitZ()) * Turn(rpy.y(), Eigen::Vector3d::UnitY()) *
-          Turn(rpy.x(), Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
-}
-
 /// The body whose parameters begin with this prefix, if any of them is set.
 std::optional<RigidBody> readBody(const Configuration& configuration, const std::string& prefix) {
   const auto mass = configuration.get<double>(prefix + "mass");
@@ -65,7 +56,7 @@ std::optional<RigidBody> readBody(const Configuration& configuration, const std:
   body.center_of_mass = vectorOf(center);
   body.inertia = inertiaOf(inertia);
   const Eigen::Vector3d angles = vectorOf(rpy);
-  body.frame = {rotationOf(angles), vectorOf(xyz)};
+  body.frame = {chain_dynamics::rotationFromRollPitchYaw(angles), vectorOf(xyz)};
   if (const auto defect = defectOf(body)) {
     const bool turned = defect->field == "frame" && !angles.allFinite();
     configuration.refuse(prefix + (defect->field != "frame" ? defect->field

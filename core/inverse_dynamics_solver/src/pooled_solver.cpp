@@ -53,10 +53,10 @@ auto PooledSolver::robotOf(const chain_dynamics::Chain& chain, std::size_t max_t
     return std::make_unique<const PooledRobot>(PooledRobot{
         std::make_unique<WorkspacePool<Workspace>>(max_threads, workspaceMaker(chain))});
   } catch (const std::bad_alloc&) {
-    throw Exception(errorText(
+    throw Exception(
         "chain " + chain.name(), "no memory left", "room for a workspace for each of max_threads",
         std::to_string(chain.jointCount()) + " joints, max_threads " + std::to_string(max_threads),
-        "set max_threads to what is used at the same time"));
+        "set max_threads to what is used at the same time");
   }
 }
 

@@ -7,7 +7,6 @@
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
-// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
 Regressor::~Regressor() = default;
 
 void Regressor::getRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,

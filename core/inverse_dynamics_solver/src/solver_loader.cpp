@@ -9,7 +9,6 @@
 #include <mutex>
 #include <pluginlib/class_loader.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "ament_index.hpp"
@@ -101,16 +100,16 @@ struct SolverLoader::Implementation {
   void requireAvailable(const std::string& name) const {
     const std::string where = "solver plugin '" + name + "'";
     if (names.empty()) {
-      throw PluginNotFoundException(errorText(
+      throw PluginNotFoundException(
           where, "not found", "a plugin of an installed package",
           "no installed plugin at all" + (index_error.empty() ? "" : " (" + index_error + ")"),
-          kSource));
+          kSource);
     }
     if (std::binary_search(names.begin(), names.end(), name)) return;
 
     const std::string nearest = suggestion(name, names);
-    throw PluginNotFoundException(errorText(where, "not found", "one of " + joined(names),
-                                            "'" + name + "'", nearest.empty() ? kSource : nearest));
+    throw PluginNotFoundException(where, "not found", "one of " + joined(names), "'" + name + "'",
+                                  nearest.empty() ? kSource : nearest);
   }
 };
 
@@ -136,17 +135,17 @@ std::shared_ptr<InverseDynamicsSolver> SolverLoader::load(const std::string& nam
     return loader.createUniqueInstance(name);
   } catch (const pluginlib::CreateClassException&) {
     throw PluginNotFoundException(
-        errorText(where, "its library has no such solver",
-                  "class " + loader.getClassType(name) + " made with this version of the interface",
-                  "none, or one made with another version",
-                  "rebuild package " + loader.getClassPackage(name) + " against this workspace"));
+        where, "its library has no such solver",
+        "class " + loader.getClassType(name) + " made with this version of the interface",
+        "none, or one made with another version",
+        "rebuild package " + loader.getClassPackage(name) + " against this workspace");
   } catch (const pluginlib::PluginlibException& e) {
-    throw PluginNotFoundException(errorText(
+    throw PluginNotFoundException(
         where,
         missesOurSymbol(e.what()) ? "its library was built against another version of the interface"
                                   : "its library can't be opened",
         "", e.what(),
-        "rebuild package " + loader.getClassPackage(name) + " against this workspace"));
+        "rebuild package " + loader.getClassPackage(name) + " against this workspace");
   }
 }
 

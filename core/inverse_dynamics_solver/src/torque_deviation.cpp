@@ -9,7 +9,6 @@
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
-// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
 TorqueDeviation::~TorqueDeviation() = default;
 
 bool TorqueDeviation::hasTorqueDeviation() const {
@@ -21,10 +20,10 @@ void TorqueDeviation::getTorqueDeviation(VectorRef deviation) const {
   MethodCall("getTorqueDeviation", torqueSolver()).vector("deviation", deviation);
   const Deviations known = torqueDeviation();
   if (known.size() == 0) {
-    throw Exception(errorText("getTorqueDeviation", "not known",
-                              "a model that states torque_deviation for each joint", "one without",
-                              "identify the robot (ids identify), or ask hasTorqueDeviation() "
-                              "first"));
+    throw Exception("getTorqueDeviation", "not known",
+                    "a model that states torque_deviation for each joint", "one without",
+                    "identify the robot (ids identify), or ask hasTorqueDeviation() "
+                    "first");
   }
   deviation = known;
 }

@@ -93,18 +93,17 @@ void Configuration::rejectOthers() const {
   if (!parameters.isStrict()) return;
   const Unknown names = unknownNames(*this);
   if (names.unknown.empty()) return;
-  throw InvalidParameterValueException(
-      errorText("parameter '" + names.unknown.front() + "'", "the solver doesn't know it",
-                "one of " + joined(names.known), "", names.remedies.front()));
+  throw InvalidParameterValueException("parameter '" + names.unknown.front() + "'",
+                                       "the solver doesn't know it",
+                                       "one of " + joined(names.known), "", names.remedies.front());
 }
 
 void rejectUndeclared(const Names& given, const Names& declared) {
   for (const std::string& name : given) {
     if (name.rfind("qos_overrides.", 0) == 0) continue;
     if (std::find(declared.begin(), declared.end(), name) != declared.end()) continue;
-    throw InvalidParameterValueException(errorText("parameter '" + name + "'",
-                                                   "the node doesn't declare it", "", "",
-                                                   remedy(nearestName(name, declared))));
+    throw InvalidParameterValueException("parameter '" + name + "'", "the node doesn't declare it",
+                                         "", "", remedy(nearestName(name, declared)));
   }
 }
 

@@ -17,14 +17,13 @@ void requireModerate(const char* method, const char* argument, const Eigen::Vect
   std::ostringstream got;
   got << values.x() << ", " << values.y() << ", " << values.z();
   throw InvalidParameterValueException(
-      errorText(std::string(method) + ": argument " + argument, "wrong value",
-                "3 finite numbers up to 1e6 [m/s^2] in the axes of the root link", got.str(),
-                "keep the last value where a sensor fails"));
+      std::string(method) + ": argument " + argument, "wrong value",
+      "3 finite numbers up to 1e6 [m/s^2] in the axes of the root link", got.str(),
+      "keep the last value where a sensor fails");
 }
 
 }  // namespace
 
-// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
 VariableGravity::~VariableGravity() = default;
 
 auto VariableGravity::required(const char* method) const -> BaseMotion {

@@ -19,10 +19,9 @@ const char* const kComputedTorque = "computed torque";
 Gains Gains::of(const ConstVectorRef& natural_frequency, const ConstVectorRef& damping_ratio) {
   if (natural_frequency.size() != damping_ratio.size()) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
-        inverse_dynamics_solver::errorText(
-            "Gains::of: damping_ratio", "wrong size",
-            std::to_string(natural_frequency.size()) + " numbers, as many as natural frequencies",
-            std::to_string(damping_ratio.size()), "give both for each joint"));
+        "Gains::of: damping_ratio", "wrong size",
+        std::to_string(natural_frequency.size()) + " numbers, as many as natural frequencies",
+        std::to_string(damping_ratio.size()), "give both for each joint");
   }
   return {natural_frequency.cwiseAbs2(), 2.0 * damping_ratio.cwiseProduct(natural_frequency)};
 }
@@ -38,11 +37,10 @@ ComputedTorque::ComputedTorque(std::shared_ptr<const InverseDynamicsSolver> solv
   const std::string law = kComputedTorque;
   if (!model().inertiaIsPhysical()) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
-        inverse_dynamics_solver::errorText(
-            law + ": solver", "its inertia matrix isn't physical",
-            "a symmetric, positive definite H(q), as errors are fed back through it",
-            "inertiaIsPhysical() is false",
-            "use the law FeedForward, or a solver made from the robot's URDF"));
+        law + ": solver", "its inertia matrix isn't physical",
+        "a symmetric, positive definite H(q), as errors are fed back through it",
+        "inertiaIsPhysical() is false",
+        "use the law FeedForward, or a solver made from the robot's URDF");
   }
   requireJointNumbers(law + ": Kp", gains_.Kp, Range::kNotNegative, "1/s^2", model().jointNames());
   requireJointNumbers(law + ": Kd", gains_.Kd, Range::kNotNegative, "1/s", model().jointNames());

@@ -35,9 +35,8 @@ ContactDetector::ContactDetector(const Eigen::Ref<const Eigen::VectorXd>& thresh
   requireNumber(name + ": release: share", release.share, Range::kPositive, "");
   if (release.share > 1.0) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
-        inverse_dynamics_solver::errorText(name + ": release: share", "wrong value",
-                                           "a share of the thresholds, at most 1",
-                                           std::to_string(release.share), "0.5 is usual"));
+        name + ": release: share", "wrong value", "a share of the thresholds, at most 1",
+        std::to_string(release.share), "0.5 is usual");
   }
   requireNumber(name + ": release: time", release.time, Range::kNotNegative, "s");
 }

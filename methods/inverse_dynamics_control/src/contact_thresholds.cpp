@@ -27,8 +27,8 @@ constexpr double kLeastAlarms = 1e-6;  // per hour: one in a century
 [[noreturn]] void refuse(const std::string& joint, const std::string& what,
                          const std::string& expected, const std::string& got,
                          const std::string& remedy) {
-  throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
-      "contact thresholds: joint " + joint, what, expected, got, remedy));
+  throw inverse_dynamics_solver::InvalidParameterValueException(
+      "contact thresholds: joint " + joint, what, expected, got, remedy);
 }
 
 /// Samples after which the autocorrelation is below 1/e; half of all if it never is.
@@ -99,10 +99,10 @@ Tail tailOf(const std::vector<double>& heights) {
 void requireAlarms(double per_hour) {
   requireNumber("contact thresholds: false_alarms_per_hour", per_hour, Range::kPositive, "1/h");
   if (per_hour >= kLeastAlarms) return;
-  throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
+  throw inverse_dynamics_solver::InvalidParameterValueException(
       "contact thresholds: false_alarms_per_hour", "wrong value",
       "a number of at least " + numberText(kLeastAlarms) + " (one in a century) [1/h]",
-      numberText(per_hour), "state more"));
+      numberText(per_hour), "state more");
 }
 
 void requireSeries(const Eigen::Ref<const Eigen::MatrixXd>& quiet,

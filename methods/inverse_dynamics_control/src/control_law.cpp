@@ -67,9 +67,7 @@ void ControlLaw::addFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
 void ControlLaw::addLostDamping(const ConstVectorRef& qd, const ConstVectorRef& qd_reference,
                                 VectorRef tau) const {
   if (friction_.source() != FrictionSource::kReferenceVelocity) return;
-  for (Eigen::Index j = 0; j < tau.size(); ++j) {
-    tau[j] += model_.lostDamping(j, qd, qd_reference);
-  }
+  for (Eigen::Index j = 0; j < tau.size(); ++j) tau[j] += model_.lostDamping(j, qd, qd_reference);
 }
 
 Status ControlLaw::refuse(Status why, const JointState& state, double period,

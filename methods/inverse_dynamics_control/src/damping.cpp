@@ -13,14 +13,13 @@ namespace inverse_dynamics_control {
 inline namespace v2 {
 namespace {
 
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 
 void require(bool fulfilled, const std::string& argument, const std::string& expected,
              const std::string& got, const std::string& remedy) {
   if (fulfilled) return;
-  throw InvalidParameterValueException(
-      errorText("dampingFor: " + argument, "wrong value", expected, got, remedy));
+  throw InvalidParameterValueException("dampingFor: " + argument, "wrong value", expected, got,
+                                       remedy);
 }
 
 }  // namespace

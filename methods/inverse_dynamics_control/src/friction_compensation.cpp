@@ -15,8 +15,8 @@ namespace {
 void require(bool fulfilled, const std::string& where, const std::string& expected, double got,
              const std::string& remedy) {
   if (fulfilled) return;
-  throw inverse_dynamics_solver::InvalidParameterValueException(
-      inverse_dynamics_solver::errorText(where, "wrong value", expected, numberText(got), remedy));
+  throw inverse_dynamics_solver::InvalidParameterValueException(where, "wrong value", expected,
+                                                                numberText(got), remedy);
 }
 
 }  // namespace

@@ -15,7 +15,6 @@ inline namespace v2 {
 namespace {
 
 using chain_dynamics::RobotDescription;
-using inverse_dynamics_solver::errorText;
 
 RobotDescription described(const std::string& urdf) {
   try {
@@ -34,9 +33,9 @@ OwnedVector jointNumbers(const std::string& name, const std::vector<double>& val
   if (values.size() == 1) return Eigen::VectorXd::Constant(n, values.front());
   if (values.size() == joints.size()) return Eigen::Map<const Eigen::VectorXd>(values.data(), n);
   throw inverse_dynamics_solver::InvalidParameterValueException(
-      errorText("parameter '" + name + "'", "wrong size",
-                std::to_string(n) + " numbers, or one for all", std::to_string(values.size()),
-                "give one for each of the joints " + chain_dynamics::joined(joints)));
+      "parameter '" + name + "'", "wrong size", std::to_string(n) + " numbers, or one for all",
+      std::to_string(values.size()),
+      "give one for each of the joints " + chain_dynamics::joined(joints));
 }
 
 OwnedVector jointNumbers(const std::string& name, const std::vector<double>& values,

@@ -51,8 +51,7 @@ ModelTerms::ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver,
     : solver_(std::move(solver)) {
   if (solver_ == nullptr) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
-        inverse_dynamics_solver::errorText(law + ": solver", "missing", "an initialized solver",
-                                           "none", "load one with SolverLoader"));
+        law + ": solver", "missing", "an initialized solver", "none", "load one with SolverLoader");
   }
   const Eigen::Index n = solver_->jointCount();
   H_ = Eigen::MatrixXd::Zero(n, n);

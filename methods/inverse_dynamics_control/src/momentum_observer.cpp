@@ -19,11 +19,10 @@ MomentumObserver::MomentumObserver(std::shared_ptr<const InverseDynamicsSolver> 
     : ExternalTorqueEstimator(std::move(solver), options, kObserver) {
   if (!model().inertiaIsPhysical()) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
-        inverse_dynamics_solver::errorText(
-            std::string(kObserver) + ": solver", "its inertia matrix isn't physical",
-            "a symmetric, positive definite H(q), whose product with qd is a momentum",
-            "inertiaIsPhysical() is false",
-            "use AccelerationResidual, or a solver made from the robot's URDF"));
+        std::string(kObserver) + ": solver", "its inertia matrix isn't physical",
+        "a symmetric, positive definite H(q), whose product with qd is a momentum",
+        "inertiaIsPhysical() is false",
+        "use AccelerationResidual, or a solver made from the robot's URDF");
   }
   const Eigen::Index n = jointCount();
   for (auto* H : {&H0_, &H_}) *H = Eigen::MatrixXd::Zero(n, n);

@@ -60,16 +60,16 @@ void requireJointNumbers(const std::string& where, const Eigen::Ref<const Eigen:
   const auto n = static_cast<Eigen::Index>(joint_names.size());
   if (values.size() != n) {
     throw InvalidParameterValueException(
-        errorText(where, "wrong size", std::to_string(n) + " numbers [" + unit + "]",
-                  std::to_string(values.size()),
-                  "give one for each of the joints " + chain_dynamics::joined(joint_names)));
+        where, "wrong size", std::to_string(n) + " numbers [" + unit + "]",
+        std::to_string(values.size()),
+        "give one for each of the joints " + chain_dynamics::joined(joint_names));
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     if (isWithin(values[j], range)) continue;
     throw InvalidParameterValueException(
-        errorText(where + ": joint " + joint_names[static_cast<std::size_t>(j)], "wrong value",
-                  std::string(inWords(range)) + " [" + unit + "]", numberText(values[j]),
-                  "correct this number"));
+        where + ": joint " + joint_names[static_cast<std::size_t>(j)], "wrong value",
+        std::string(inWords(range)) + " [" + unit + "]", numberText(values[j]),
+        "correct this number");
   }
 }
 
@@ -82,9 +82,9 @@ bool areJointNumbers(const Eigen::Ref<const Eigen::VectorXd>& values, Range rang
 
 void requireNumber(const std::string& where, double value, Range range, const std::string& unit) {
   if (isWithin(value, range)) return;
-  throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
+  throw inverse_dynamics_solver::InvalidParameterValueException(
       where, "wrong value", std::string(inWords(range)) + " [" + unit + "]", numberText(value),
-      "correct this number"));
+      "correct this number");
 }
 
 }  // namespace v2

@@ -14,7 +14,6 @@ namespace inverse_dynamics_control {
 inline namespace v2 {
 namespace {
 
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::Payload;
 
@@ -48,26 +47,26 @@ RigidBody bodyOf(double mass, const std::vector<double>& center_of_mass,
                  const std::vector<double>& inertia, const std::string& where) {
   const auto& c = center_of_mass;
   if (c.size() != 3 || inertia.size() != 6) {
-    throw InvalidParameterValueException(errorText(
+    throw InvalidParameterValueException(
         where + "*", "wrong size", "3 numbers of center_of_mass, 6 of inertia",
-        std::to_string(c.size()) + " and " + std::to_string(inertia.size()), "correct them"));
+        std::to_string(c.size()) + " and " + std::to_string(inertia.size()), "correct them");
   }
   RigidBody body;
   body.mass = mass;
   body.center_of_mass << c[0], c[1], c[2];
   body.inertia = symmetric(inertia);
   if (const auto defect = inverse_dynamics_solver::defectOf(body)) {
-    throw InvalidParameterValueException(errorText(where + defect->field, "no possible body",
-                                                   defect->expected, defect->got, defect->remedy));
+    throw InvalidParameterValueException(where + defect->field, "no possible body",
+                                         defect->expected, defect->got, defect->remedy);
   }
   return body;
 }
 
 void requireFrame(const std::string& frame, const std::string& link, const std::string& role) {
   if (frame.empty() || frame == link) return;
-  throw InvalidParameterValueException(errorText(
+  throw InvalidParameterValueException(
       "header.frame_id", "another frame", "the " + role + (link.empty() ? "" : " " + link), frame,
-      "give it in the " + role + " frame, or leave frame_id empty"));
+      "give it in the " + role + " frame, or leave frame_id empty");
 }
 
 PayloadRamp::PayloadRamp(std::shared_ptr<InverseDynamicsSolver> solver, const RigidBody& first,
@@ -83,9 +82,9 @@ PayloadRamp::PayloadRamp(std::shared_ptr<InverseDynamicsSolver> solver, const Ri
 
 void PayloadRamp::requireCarrier(const RigidBody& body) const {
   if (carrier_ != nullptr || !(body.mass > 0)) return;
-  throw InvalidParameterValueException(
-      errorText("payload", "the solver can't carry any", "a solver with the capability Payload",
-                "none of it", "use another solver, or leave the mass at 0"));
+  throw InvalidParameterValueException("payload", "the solver can't carry any",
+                                       "a solver with the capability Payload", "none of it",
+                                       "use another solver, or leave the mass at 0");
 }
 
 void PayloadRamp::aimAt(const RigidBody& body) {

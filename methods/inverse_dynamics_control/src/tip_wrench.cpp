@@ -3,7 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/kinematics.hpp>
@@ -17,7 +16,6 @@ namespace inverse_dynamics_control {
 inline namespace v2 {
 namespace {
 
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::Kinematics;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -28,14 +26,14 @@ const char* const kTipWrench = "tip wrench";
 const Kinematics* kinematicsOf(const inverse_dynamics_solver::InverseDynamicsSolver* solver) {
   const std::string where = std::string(kTipWrench) + ": solver";
   if (solver == nullptr) {
-    throw InvalidParameterValueException(
-        errorText(where, "missing", "an initialized solver", "none", "load one with SolverLoader"));
+    throw InvalidParameterValueException(where, "missing", "an initialized solver", "none",
+                                         "load one with SolverLoader");
   }
   const auto* kinematics = dynamic_cast<const Kinematics*>(solver);
   if (kinematics == nullptr) {
-    throw InvalidParameterValueException(
-        errorText(where, "no Jacobian", "a solver with the capability Kinematics", "none of it",
-                  "use one of this project's solvers"));
+    throw InvalidParameterValueException(where, "no Jacobian",
+                                         "a solver with the capability Kinematics", "none of it",
+                                         "use one of this project's solvers");
   }
   return kinematics;
 }

@@ -38,9 +38,7 @@ std::string gapFinding(const SampleReport& samples, bool filtered) {
 
 // Limits of the choice of the cut-off.
 void addFilterFindings(const FilterChoice& filter, std::vector<std::string>& found) {
-  if (!filter.chosen) {
-    return;
-  }
+  if (!filter.chosen) return;
   const CutoffChoice& choice = filter.choice;
   if (choice.moving < kMostlyAtRest) {
     found.push_back("the arm rests for " + formatted("%.3g", 100.0 * (1.0 - choice.moving)) +
@@ -76,9 +74,7 @@ AccelerationMethod accelerationMethod(const std::string& text) {
   for (const AccelerationMethod method :
        {AccelerationMethod::kAuto, AccelerationMethod::kLowPass, AccelerationMethod::kGiven,
         AccelerationMethod::kBackwardDifference}) {
-    if (name(method) == text) {
-      return method;
-    }
+    if (name(method) == text) return method;
     names.push_back(name(method));
   }
   throw EvaluationError("accelerations: expected one of " + listed(names) + ", got '" + text + "'");
@@ -105,9 +101,7 @@ std::vector<std::string> sampleFindings(const std::string& clock, const SampleRe
         "positions and velocities contradict the stamps: samples taken at equal distances "
         "fit them better");
   }
-  if (samples.longest_gap.behind > 0) {
-    found.push_back(gapFinding(samples, filter != nullptr));
-  }
+  if (samples.longest_gap.behind > 0) found.push_back(gapFinding(samples, filter != nullptr));
   if (counts.isolated > 0) {
     found.push_back(std::to_string(counts.isolated) + of_all +
                     "lie between gaps, in pieces too short to be filtered");
@@ -123,19 +117,13 @@ std::vector<std::string> sampleFindings(const std::string& clock, const SampleRe
         " of the chain jumps and returns, further than all other samples together: if it "
         "is wrong, leave it out, or give a cut-off");
   }
-  if (filter != nullptr) {
-    addFilterFindings(*filter, found);
-  }
+  if (filter != nullptr) addFilterFindings(*filter, found);
   return found;
 }
 
 std::string accelerationSummary(AccelerationMethod method, double cutoff, bool chosen) {
-  if (method == AccelerationMethod::kGiven) {
-    return "given by the recording";
-  }
-  if (method != AccelerationMethod::kLowPass) {
-    return name(method) + ", no filter";
-  }
+  if (method == AccelerationMethod::kGiven) return "given by the recording";
+  if (method != AccelerationMethod::kLowPass) return name(method) + ", no filter";
   return "zero-phase low-pass, cut-off " + formatted("%.3g", cutoff) + " Hz (" +
          (chosen ? "chosen from the data" : "given") + "), then derivative";
 }

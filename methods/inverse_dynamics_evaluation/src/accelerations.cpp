@@ -13,7 +13,6 @@
 #include "checks.hpp"
 #include "figures.hpp"
 #include "filtering.hpp"
-#include "pi.hpp"
 #include "spectrum.hpp"
 
 namespace inverse_dynamics_evaluation {
@@ -38,11 +37,11 @@ struct Section {
 // Analog poles lie on a circle of radius w_c; the bilinear transformation s = (z - 1) / (z + 1)
 // with w_c = tan(pi f_c / f_s) takes them to the digital filter.
 std::vector<Section> butterworth(int order, double cutoff_over_sampling) {
-  const double w = std::tan(kPi * cutoff_over_sampling);
+  const double w = std::tan(M_PI * cutoff_over_sampling);
   std::vector<Section> sections;
   for (int i = 0; i < order / 2; ++i) {
     // s^2 + 2 cos(theta) w s + w^2, theta the angle of the pole to the negative real axis
-    const double theta = kPi * (order - 1 - 2 * i) / (2.0 * order);
+    const double theta = M_PI * (order - 1 - 2 * i) / (2.0 * order);
     const double damping = 2.0 * std::cos(theta) * w;
     const double a0 = 1.0 + damping + w * w;
     const double b = w * w / a0;
@@ -113,11 +112,9 @@ void zeroPhase(Columns samples, double cutoff_over_sampling, int order) {
 }  // namespace
 
 double lowPassGain(double frequency, double cutoff, double sampling_frequency, int order) {
-  if (frequency >= sampling_frequency / 2) {
-    return 0.0;
-  }
-  const double ratio =
-      std::tan(kPi * frequency / sampling_frequency) / std::tan(kPi * cutoff / sampling_frequency);
+  if (frequency >= sampling_frequency / 2) return 0.0;
+  const double ratio = std::tan(M_PI * frequency / sampling_frequency) /
+                       std::tan(M_PI * cutoff / sampling_frequency);
   return 1.0 / (1.0 + std::pow(ratio * ratio, order));
 }
 
@@ -177,7 +174,7 @@ MatrixXd beyondEnd(const ConstColumns& samples, Index count) {
   const Eigen::ArrayXd inside = Eigen::ArrayXd::LinSpaced(fit, 0.0, (length - 1.0) / length);
   const Eigen::ArrayXd outside =
       Eigen::ArrayXd::LinSpaced(count, -1.0 / length, -static_cast<double>(count) / length);
-  const Eigen::VectorXd weight = (kPi / 2.0 * inside).cos().square().square().matrix();
+  const Eigen::VectorXd weight = (M_PI / 2.0 * inside).cos().square().square().matrix();
   const MatrixXd weighted = weight.asDiagonal() * powers(inside);
   const Eigen::Matrix4d normal = weighted.transpose() * powers(inside);
   const Eigen::Matrix<double, kCoefficients, Eigen::Dynamic> coefficients =
@@ -254,9 +251,7 @@ struct Grid : Piece {
 Eigen::Vector4d cubicWeights(const Eigen::Vector4d& at, double t) {
   Eigen::Vector4d weights = Eigen::Vector4d::Ones();
   for (Index i = 0; i < 4; ++i) {
-    for (Index k = 0; k < 4; ++k) {
-      weights[i] *= i == k ? 1.0 : (t - at[k]) / (at[i] - at[k]);
-    }
+    for (Index k = 0; k < 4; ++k) weights[i] *= i == k ? 1.0 : (t - at[k]) / (at[i] - at[k]);
   }
   return weights;
 }
@@ -354,9 +349,7 @@ std::vector<Grid> gridsOf(const SampleReport& found, const SampleRules& rules) {
   }
   std::vector<Grid> grids;
   grids.reserve(found.pieces.size());
-  for (const Piece& piece : found.pieces) {
-    grids.emplace_back(piece, found.usual_period);
-  }
+  for (const Piece& piece : found.pieces) grids.emplace_back(piece, found.usual_period);
   return grids;
 }
 
@@ -416,9 +409,7 @@ CutoffChoice choiceOf(const SampleTable& table, const std::vector<Grid>& grids,
     (grid.count < shortest ? left_out : kept) += static_cast<double>(grid.count);
   }
   VelocitySpectra spectra = spectraOf(table, grids, shortest, sampling_frequency);
-  if (spectra.moving * kept < left_out) {
-    spectra = spectraOf(table, grids, 0, sampling_frequency);
-  }
+  if (spectra.moving * kept < left_out) spectra = spectraOf(table, grids, 0, sampling_frequency);
   return cutoffOf(spectra, static_cast<double>(longest - 1) / sampling_frequency,
                   sampling_frequency, order);
 }
@@ -454,9 +445,7 @@ class Interpolation {
 
   /// Samples behind the last piece.
   void finish() {
-    for (; next_ < table_.size(); ++next_) {
-      table_.qdd.col(next_) = last_;
-    }
+    for (; next_ < table_.size(); ++next_) table_.qdd.col(next_) = last_;
   }
 
  private:
@@ -493,9 +482,7 @@ FilterChoice filterOf(SampleTable& table, const SampleReport& found,
     filter.choice = choiceOf(table, grids, filter.sampling_frequency, filter.order);
     filter.cutoff = filter.choice.cutoff;
   }
-  for (const Grid& grid : grids) {
-    requireFilter(1.0 / grid.period, filter.cutoff, filter.order);
-  }
+  for (const Grid& grid : grids) requireFilter(1.0 / grid.period, filter.cutoff, filter.order);
   Interpolation interpolation(table);
   for (const Grid& grid : grids) {
     const DerivativeRoom room(grid.count, 1.0 / grid.period, filter.cutoff, filter.order);

@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <cstddef>
 #include <string>
 
 #include "inverse_dynamics_evaluation/error.hpp"
@@ -28,9 +27,7 @@ inline void requireSameSize(const std::string& where, const std::string& what,
                             const Eigen::Ref<const Eigen::MatrixXd>& matrix,
                             const std::string& other_name,
                             const Eigen::Ref<const Eigen::MatrixXd>& other) {
-  if (matrix.rows() == other.rows() && matrix.cols() == other.cols()) {
-    return;
-  }
+  if (matrix.rows() == other.rows() && matrix.cols() == other.cols()) return;
   throw EvaluationError(where, what, sizeText(other.rows(), other.cols()) + " as in " + other_name,
                         sizeText(matrix.rows(), matrix.cols()), "a sample is a column");
 }
@@ -59,9 +56,7 @@ inline void requireSamples(const std::string& where, const std::string& what,
 /// No NaN, no infinity; joint (row) and sample (column) are named, counted from 1.
 inline void requireFinite(const std::string& where, const std::string& what,
                           const Eigen::Ref<const Eigen::MatrixXd>& samples) {
-  if (samples.allFinite()) {
-    return;
-  }
+  if (samples.allFinite()) return;
   for (Eigen::Index k = 0; k < samples.cols(); ++k) {
     for (Eigen::Index j = 0; j < samples.rows(); ++j) {
       if (!std::isfinite(samples(j, k))) {

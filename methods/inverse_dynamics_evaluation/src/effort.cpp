@@ -35,9 +35,7 @@ std::string asConfigured(const EffortOptions& options) {
 }
 
 Effort withGains(Effort effort, const EffortOptions& options) {
-  if (effort.meaning != kCurrent) {
-    return effort;
-  }
+  if (effort.meaning != kCurrent) return effort;
   if (options.drive_gains.empty()) {
     throw ConfigurationError(
         options.where + ": effort means current, " + effort.stated_by +
@@ -67,9 +65,7 @@ std::string Effort::summary() const {
 }
 
 OwnedMatrix Effort::torques(const Eigen::Ref<const Eigen::MatrixXd>& effort) const {
-  if (meaning != kCurrent) {
-    return effort;
-  }
+  if (meaning != kCurrent) return effort;
   const auto gains = static_cast<Eigen::Index>(drive_gains.size());
   if (gains != effort.rows()) {
     throw EvaluationError("torques of recorded efforts", "drive gains",
@@ -81,18 +77,14 @@ OwnedMatrix Effort::torques(const Eigen::Ref<const Eigen::MatrixXd>& effort) con
 
 std::vector<double> driveGainsOf(const InverseDynamicsSolver& solver) {
   const auto* motors = dynamic_cast<const inverse_dynamics_solver::MotorCurrents*>(&solver);
-  if (motors == nullptr) {
-    return {};
-  }
+  if (motors == nullptr) return {};
   const Eigen::VectorXd gains = motors->getDriveGainsMatrix().diagonal();
   return {gains.data(), gains.data() + gains.size()};
 }
 
 std::vector<double> driveGains(const std::vector<double>& configured, const std::string& where,
                                const InverseDynamicsSolver& solver) {
-  if (configured.empty()) {
-    return driveGainsOf(solver);
-  }
+  if (configured.empty()) return driveGainsOf(solver);
   const std::vector<std::string>& names = solver.jointNames();
   if (configured.size() != names.size()) {
     throw ConfigurationError(where + ": expected " + std::to_string(names.size()) +

@@ -120,9 +120,7 @@ Evaluation readMotion(JointStateSource& source, const RecordingOptions& recordin
   statedEffort(options.effort);  // refuses before a recording is read
   result.table = std::make_shared<SampleTable>(recording.scratch);
   TellProgress progress;
-  if (options.progress) {
-    progress = [&](double share) { options.progress(kRead * share); };
-  }
+  if (options.progress) progress = [&](double share) { options.progress(kRead * share); };
   readTable(source, recording, *result.table, progress);
   prepare(result, solver, options);
   return result;

@@ -48,9 +48,7 @@ std::string listed(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
     text += (i == 0 ? "" : ", ") + chain_dynamics::printable(names[i], kLongest);
   }
-  if (names.size() > kMost) {
-    text += " and " + std::to_string(names.size() - kMost) + " others";
-  }
+  if (names.size() > kMost) text += " and " + std::to_string(names.size() - kMost) + " others";
   return text;
 }
 

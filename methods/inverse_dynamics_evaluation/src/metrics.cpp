@@ -2,7 +2,6 @@
 
 #include "inverse_dynamics_evaluation/metrics.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>

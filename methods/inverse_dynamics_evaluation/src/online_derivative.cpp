@@ -7,7 +7,6 @@
 #include <string>
 
 #include "inverse_dynamics_evaluation/error.hpp"
-#include "pi.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -26,7 +25,7 @@ double requirePositive(const char* what, double value) {
 }  // namespace
 
 OnlineDerivative::OnlineDerivative(Eigen::Index size, double cutoff, double longest_gap)
-    : w_(2.0 * kPi * requirePositive("cut-off [Hz]", cutoff)),
+    : w_(2.0 * M_PI * requirePositive("cut-off [Hz]", cutoff)),
       longest_gap_(requirePositive("longest gap [s]", longest_gap)),
       input_(Eigen::VectorXd::Zero(size)),
       value_(Eigen::VectorXd::Zero(size)),
@@ -39,9 +38,7 @@ OnlineDerivative::Step OnlineDerivative::update(std::int64_t stamp,
     return Step::kStarted;
   }
   const double dt = static_cast<double>(stamp - last_) * 1e-9;
-  if (dt == 0.0) {
-    return Step::kRepeated;
-  }
+  if (dt == 0.0) return Step::kRepeated;
   if (dt < 0.0 || dt > longest_gap_) {
     start(stamp, u);
     return dt < 0.0 ? Step::kWentBack : Step::kGap;

@@ -2,7 +2,6 @@
 
 #include "inverse_dynamics_evaluation/run_configuration.hpp"
 
-#include <algorithm>
 #include <chain_dynamics/text.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <optional>
@@ -43,9 +42,7 @@ SolverParameters solverParameters(const RunConfiguration& robot) {
   all["friction"] = robot.friction;
   for (const auto& [name, text] : {std::pair("root", robot.root), std::pair("tip", robot.tip),
                                    std::pair("model", robot.model)}) {
-    if (!text.empty()) {
-      all[name] = text;
-    }
+    if (!text.empty()) all[name] = text;
   }
   if (robot.gravity) {
     all["gravity"] = std::vector<double>(robot.gravity->begin(), robot.gravity->end());
@@ -55,9 +52,7 @@ SolverParameters solverParameters(const RunConfiguration& robot) {
 
 std::vector<std::string> recordedNames(const RunConfiguration& robot,
                                        const std::vector<std::string>& joint_names) {
-  if (robot.joints.empty()) {
-    return joint_names;
-  }
+  if (robot.joints.empty()) return joint_names;
   const std::string where = placeOf(robot, "joints") + ": expected ";
   if (robot.joints.size() != joint_names.size()) {
     throw ConfigurationError(where + std::to_string(joint_names.size()) +

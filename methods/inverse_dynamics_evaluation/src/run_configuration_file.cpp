@@ -14,7 +14,6 @@
 #include <set>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include "inverse_dynamics_evaluation/accelerations.hpp"
@@ -62,9 +61,7 @@ std::string textOf(const std::optional<LocatedValue>& value, const std::string& 
 }
 
 std::string existingFile(const std::optional<LocatedValue>& value) {
-  if (!value) {
-    return "";
-  }
+  if (!value) return "";
   const std::string directory = fs::path(value->file()).parent_path();
   std::string path = value->text();
   try {
@@ -72,45 +69,33 @@ std::string existingFile(const std::optional<LocatedValue>& value) {
   } catch (const ConfigurationError& error) {
     value->fail("a file", error.what());
   }
-  if (!isFile(path)) {
-    value->fail("a file", path + " isn't there");
-  }
+  if (!isFile(path)) value->fail("a file", path + " isn't there");
   return path;
 }
 
 std::optional<std::array<double, 3>> gravityOf(const std::optional<LocatedValue>& value) {
-  if (!value) {
-    return std::nullopt;
-  }
+  if (!value) return std::nullopt;
   const std::vector<LocatedValue> entries = value->entries(3);
   return std::array<double, 3>{entries[0].number(), entries[1].number(), entries[2].number()};
 }
 
 std::vector<double> driveGainsOf(const std::optional<LocatedValue>& value) {
   std::vector<double> gains;
-  if (!value) {
-    return gains;
-  }
+  if (!value) return gains;
   for (const LocatedValue& entry : value->entries()) {
     gains.push_back(entry.number());
     if (gains.back() <= 0) {
       entry.fail("a drive gain above zero, in N m/A", "change the sign of the efforts instead");
     }
   }
-  if (gains.empty()) {
-    value->fail("a number per joint");
-  }
+  if (gains.empty()) value->fail("a number per joint");
   return gains;
 }
 
 std::vector<std::string> jointsOf(const std::optional<LocatedValue>& value) {
   std::vector<std::string> names;
-  if (!value) {
-    return names;
-  }
-  for (const LocatedValue& entry : value->entries()) {
-    names.push_back(entry.text());
-  }
+  if (!value) return names;
+  for (const LocatedValue& entry : value->entries()) names.push_back(entry.text());
   if (std::set<std::string>(names.begin(), names.end()).size() != names.size()) {
     value->refuse("expected each name once, got " + joined(names));
   }
@@ -118,9 +103,7 @@ std::vector<std::string> jointsOf(const std::optional<LocatedValue>& value) {
 }
 
 void readAccelerations(const std::optional<LocatedValue>& value, RunConfiguration& robot) {
-  if (!value) {
-    return;
-  }
+  if (!value) return;
   LocatedMap map = value->map();
   std::vector<std::string> methods;
   for (const auto method : {AccelerationMethod::kAuto, AccelerationMethod::kLowPass,
@@ -130,18 +113,14 @@ void readAccelerations(const std::optional<LocatedValue>& value, RunConfiguratio
   robot.accelerations = textOf(map.optional("method"), robot.accelerations, methods);
   if (const auto cutoff = map.optional("cutoff")) {
     robot.cutoff = cutoff->number();
-    if (*robot.cutoff <= 0) {
-      cutoff->fail("a frequency in Hz above zero");
-    }
+    if (*robot.cutoff <= 0) cutoff->fail("a frequency in Hz above zero");
   }
   map.rejectOthers();
 }
 
 // Format of a recorded table; its reader checks the values.
 void readTable(const std::optional<LocatedValue>& value, RunConfiguration& robot) {
-  if (!value) {
-    return;
-  }
+  if (!value) return;
   LocatedMap map = value->map();
   robot.columns = textOf(map.optional("columns"));
   if (const auto scale = map.optional("scale")) {
@@ -237,9 +216,7 @@ std::vector<std::string> robotNames() {
   std::error_code ignored;
   for (const auto& entry :
        fs::directory_iterator(fs::path(packageShare(kRobotsPackage)) / "robots", ignored)) {
-    if (entry.path().extension() == ".yaml") {
-      names.push_back(entry.path().stem());
-    }
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -284,9 +261,7 @@ RunConfiguration readRunConfiguration(const std::string& name_or_file) {
   }
   const std::string file =
       fs::path(packageShare(kRobotsPackage)) / "robots" / (name_or_file + ".yaml");
-  if (!isFile(file)) {
-    refuseName(name_or_file);
-  }
+  if (!isFile(file)) refuseName(name_or_file);
   return readFile(file);
 }
 

@@ -35,13 +35,9 @@ int openFile(const std::string& directory) {
   if (file < 0) {  // a file system that has no such files
     std::string name = directory + "/.samples-XXXXXX";
     file = mkostemp(name.data(), O_CLOEXEC);
-    if (file >= 0) {
-      unlink(name.c_str());
-    }
+    if (file >= 0) unlink(name.c_str());
   }
-  if (file < 0) {
-    throwCannotWrite(directory, errno);
-  }
+  if (file < 0) throwCannotWrite(directory, errno);
   return file;
 }
 

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "inverse_dynamics_evaluation/error.hpp"
-#include "pi.hpp"
 #include "start_transient.hpp"
 
 namespace inverse_dynamics_evaluation {
@@ -63,9 +62,7 @@ void markFaults(SampleTable& table) {
 struct Timing {
   // s; of sample `k`, which is fresh sample number `i`.
   double operator()(Index k, Index i, double stamp) const {
-    if (base == TimeBase::kStamps || fresh < 2) {
-      return stamp;
-    }
+    if (base == TimeBase::kStamps || fresh < 2) return stamp;
     const double share = base == TimeBase::kRegular
                              ? static_cast<double>(k) / static_cast<double>(count - 1)
                              : static_cast<double>(i) / static_cast<double>(fresh - 1);
@@ -229,9 +226,7 @@ class Distances {
 // What is left to be done about stamps that don't increase.
 void checkStamps(const Census& census, const SampleRules& rules, TimeBase base) {
   const Index count = census.counts.non_increasing;
-  if (base != TimeBase::kStamps || count == 0) {
-    return;
-  }
+  if (base != TimeBase::kStamps || count == 0) return;
   const std::string found = std::to_string(count) + " of " + std::to_string(census.counts.all) +
                             " that don't, the first in sample " +
                             std::to_string(census.backward.sample + 1) +
@@ -429,7 +424,7 @@ void markKept(SampleTable& table, const SampleRules& rules, SampleCounts& counts
 
 // A driver that reports within one turn jumps by one. A longer jump is of other units (360 degrees
 // are 57 turns of a radian) or of another start, and stays for the diagnosis to see.
-constexpr double kLongestJump = 1.5 * 2.0 * kPi;  // rad
+constexpr double kLongestJump = 1.5 * 2.0 * M_PI;  // rad
 
 // What a whole turn may be off by where velocity and time between two samples say how far the joint
 // went: 3 rad/s over stamps that are wrong by 30 ms.
@@ -448,7 +443,7 @@ Jumps unwrapJoint(SampleTable& table, Index j, JointType type) {
   double before = table.q(j, 0);
   for (Index k = 1; k < table.size(); ++k) {
     const double recorded = table.q(j, k), change = recorded - before;
-    if (std::abs(change) > kPi && std::abs(change) < kLongestJump) {
+    if (std::abs(change) > M_PI && std::abs(change) < kLongestJump) {
       const double turn = unwrapped(JointType::kContinuous, recorded, before) - recorded;
       const double way =
           0.5 * (table.time[k] - table.time[k - 1]) * (table.qd(j, k - 1) + table.qd(j, k));

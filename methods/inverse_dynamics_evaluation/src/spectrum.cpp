@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <vector>
-
-#include "pi.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -123,7 +120,7 @@ Eigen::ArrayXd activity(const Stretch& stretch, double sampling_frequency) {
     widened[b] = 0.0;
     for (Index i = begin; i < end; ++i) {
       const double beyond = std::max<double>(0.0, static_cast<double>(std::abs(i - b) - kMargin));
-      const double fall = std::cos(kPi / 2.0 * beyond / static_cast<double>(kMargin + 1));
+      const double fall = std::cos(M_PI / 2.0 * beyond / static_cast<double>(kMargin + 1));
       widened[b] = std::max(widened[b], fall * fall * moving[i]);
     }
   }
@@ -144,7 +141,7 @@ Eigen::ArrayXd activity(const Stretch& stretch, double sampling_frequency) {
 // Hann window, periodic.
 Eigen::ArrayXd hann(Index length) {
   const Eigen::ArrayXd angle =
-      Eigen::ArrayXd::LinSpaced(length, 0.0, static_cast<double>(length - 1)) * 2.0 * kPi /
+      Eigen::ArrayXd::LinSpaced(length, 0.0, static_cast<double>(length - 1)) * 2.0 * M_PI /
       static_cast<double>(length);
   return 0.5 - 0.5 * angle.cos();
 }
@@ -183,9 +180,7 @@ std::vector<Index> segmentBegins(Index samples, Index length) {
   const Index half = std::max<Index>(length / 2, 1);
   const Index steps = (spare + half - 1) / half;
   std::vector<Index> begins = {0};
-  for (Index s = 1; s <= steps; ++s) {
-    begins.push_back(s * spare / steps);
-  }
+  for (Index s = 1; s <= steps; ++s) begins.push_back(s * spare / steps);
   return begins;
 }
 
@@ -227,9 +222,7 @@ void SpectrumSums::divideIntoBands(Index half, double step) {
 
 void SpectrumSums::add(const Stretch& stretch) {
   const Index samples = stretch.qd.cols();
-  if (samples < kLeastStretch) {
-    return;
-  }
+  if (samples < kLeastStretch) return;
   const Eigen::ArrayXd weight = activity(stretch, sampling_frequency_);
   moving_ += weight.sum();
   samples_ += static_cast<double>(samples);
@@ -261,7 +254,7 @@ void SpectrumSums::add(const Eigen::ArrayXd& velocity, const Eigen::ArrayXd& rat
     const Complex here = transform_[k];
     const Complex mirrored = std::conj(transform_[size - k]);
     // a central difference passes frequency w with the gain sin(w) / w
-    const double w = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(size);
+    const double w = 2.0 * M_PI * static_cast<double>(k) / static_cast<double>(size);
     const double gain = std::max(std::sin(w) / w, kLeastDifferenceGain);
     const Complex velocity_part = 0.5 * (here + mirrored);
     const Complex position_part = Complex(0.0, -0.5 / gain) * (here - mirrored);

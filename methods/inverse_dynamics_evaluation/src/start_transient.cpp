@@ -50,14 +50,10 @@ std::vector<double> roughness(const ConstMatrix& effort, const Eigen::VectorXd& 
     const double scale = quantile(second, 0.5);
     if (scale > 0) {
       joints += 1.0;
-      for (std::size_t i = 0; i < second.size(); ++i) {
-        sum[i] += std::pow(second[i] / scale, 2);
-      }
+      for (std::size_t i = 0; i < second.size(); ++i) sum[i] += std::pow(second[i] / scale, 2);
     }
   }
-  for (double& value : sum) {
-    value = joints > 0 ? std::sqrt(value / joints) : 0.0;
-  }
+  for (double& value : sum) value = joints > 0 ? std::sqrt(value / joints) : 0.0;
   return sum;
 }
 
@@ -65,9 +61,7 @@ std::vector<double> roughness(const ConstMatrix& effort, const Eigen::VectorXd& 
 
 Index startTransient(const ConstMatrix& effort, const Eigen::VectorXd& instant, double period,
                      double window) {
-  if (instant.size() < kLeastForTransient) {
-    return 0;
-  }
+  if (instant.size() < kLeastForTransient) return 0;
   const std::vector<double> rough = roughness(effort, instant, period);
   const double limit = kTransientFactor * quantile(rough, kTransientQuantile);
   Index end = 0;

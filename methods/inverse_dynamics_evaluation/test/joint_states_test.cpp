@@ -254,11 +254,11 @@ TEST(JointStateDecoder, ReadsOrRefusesAnyBytes) {
 TEST(Utf8, IsWhatTheStandardSays) {
   for (const char* text :
        {"", "a", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xf4\x8f\xbf\xbf"}) {
-    EXPECT_TRUE(isUtf8(text, std::strlen(text))) << text;
+    EXPECT_NO_THROW(requireUtf8(text, "text")) << text;
   }
   for (const char* text : {"\x80", "\xc3", "\xc0\x80", "\xc1\xbf", "\xe0\x80\x80", "\xed\xa0\x80",
                            "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xe2\x82", "\xe2\x28\xa1"}) {
-    EXPECT_FALSE(isUtf8(text, std::strlen(text))) << text;
+    EXPECT_THROW(requireUtf8(text, "text"), DamageError) << text;
   }
 }
 

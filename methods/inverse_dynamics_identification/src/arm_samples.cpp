@@ -10,7 +10,6 @@
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/regressor_gram.hpp>
 #include <chain_dynamics/states.hpp>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>

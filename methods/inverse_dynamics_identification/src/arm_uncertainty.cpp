@@ -14,7 +14,6 @@ namespace inverse_dynamics_identification {
 inline namespace v2 {
 namespace {
 
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::InverseDynamicsSolver;
 using inverse_dynamics_solver::Regressor;
@@ -23,9 +22,9 @@ using Index = Eigen::Index;
 const Regressor& regressorOf(const InverseDynamicsSolver* solver) {
   const auto* const regressor = dynamic_cast<const Regressor*>(solver);
   if (regressor == nullptr) {
-    throw InvalidParameterValueException(errorText(
+    throw InvalidParameterValueException(
         "arm uncertainty: solver", "", "one with the capability Regressor",
-        solver == nullptr ? "none" : "one without it", "take the solver of the identified model"));
+        solver == nullptr ? "none" : "one without it", "take the solver of the identified model");
   }
   return *regressor;
 }
@@ -45,12 +44,12 @@ void checkFits(const ArmUncertainty& uncertainty, Index joints) {
     return;
   }
   throw InvalidParameterValueException(
-      errorText("arm uncertainty", "",
-                std::to_string(joints) +
-                    " laws of friction and finite numbers in 16, 17 or 19 rows per joint",
-                std::to_string(laws) + " laws and " + std::to_string(uncertainty.factor.rows()) +
-                    " rows" + (uncertainty.factor.allFinite() ? "" : ", not all of them finite"),
-                "take that of the solver's own model"));
+      "arm uncertainty", "",
+      std::to_string(joints) +
+          " laws of friction and finite numbers in 16, 17 or 19 rows per joint",
+      std::to_string(laws) + " laws and " + std::to_string(uncertainty.factor.rows()) + " rows" +
+          (uncertainty.factor.allFinite() ? "" : ", not all of them finite"),
+      "take that of the solver's own model");
 }
 
 }  // namespace

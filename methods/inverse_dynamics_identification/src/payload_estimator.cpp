@@ -28,7 +28,6 @@ inline namespace v2 {
 namespace {
 
 using inverse_dynamics_solver::ConstVectorRef;
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::InverseDynamicsSolver;
 using Index = Eigen::Index;
@@ -44,7 +43,7 @@ constexpr double kFirstMass = 1.0;                        // kg, to start with
 void require(bool fine, const std::string& option, const std::string& expected,
              const std::string& got) {
   if (fine) return;
-  throw InvalidParameterValueException(errorText("payload: " + option, "", expected, got));
+  throw InvalidParameterValueException("payload: " + option, "", expected, got);
 }
 
 void requireNumbers(const chain_dynamics::OwnedVector& values, Index n, double least,

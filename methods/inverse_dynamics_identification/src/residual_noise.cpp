@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_identification/residual_noise.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
@@ -65,8 +64,8 @@ void takeMeans(Eigen::VectorXd& time, Eigen::MatrixXd& residuals, double correla
 void requireArgument(bool fine, const std::string& argument, const std::string& expected,
                      const std::string& got) {
   if (fine) return;
-  throw inverse_dynamics_solver::InvalidParameterValueException(
-      inverse_dynamics_solver::errorText("residualNoise: " + argument, "", expected, got));
+  throw inverse_dynamics_solver::InvalidParameterValueException("residualNoise: " + argument, "",
+                                                                expected, got);
 }
 
 }  // namespace

@@ -16,7 +16,6 @@ namespace inverse_dynamics_identification {
 inline namespace v2 {
 namespace {
 
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::InverseDynamicsSolver;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -24,16 +23,14 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 template <class Capability>
 const Capability& capabilityOf(const InverseDynamicsSolver* solver, const char* name) {
   if (solver == nullptr) {
-    throw InvalidParameterValueException(errorText("payload: solver", "missing",
-                                                   "an initialized solver", "none",
-                                                   "load one with SolverLoader"));
+    throw InvalidParameterValueException("payload: solver", "missing", "an initialized solver",
+                                         "none", "load one with SolverLoader");
   }
   const auto* const capability = dynamic_cast<const Capability*>(solver);
   if (capability == nullptr) {
-    throw InvalidParameterValueException(
-        errorText("payload: solver", "it can't tell how the tip moves",
-                  std::string("a solver with the capability ") + name, "one without it",
-                  "use one of this project's solvers"));
+    throw InvalidParameterValueException("payload: solver", "it can't tell how the tip moves",
+                                         std::string("a solver with the capability ") + name,
+                                         "one without it", "use one of this project's solvers");
   }
   return *capability;
 }

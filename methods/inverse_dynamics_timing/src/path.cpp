@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 [[noreturn]] void refusePath(const std::string& what, const std::string& expected,
                              const std::string& got, const std::string& remedy = "") {
-  throw inverse_dynamics_solver::InvalidParameterValueException(
-      inverse_dynamics_solver::errorText("path", what, expected, got, remedy));
+  throw inverse_dynamics_solver::InvalidParameterValueException("path", what, expected, got,
+                                                                remedy);
 }
 
 /// Waypoints without repetitions, and the path's parameter at each.
@@ -86,9 +86,7 @@ MatrixXd curvatures(const Way& way) {
     diagonal[k] -= factor * step(k - 1);
     M.col(k) -= factor * M.col(k - 1);
   }
-  for (Index k = m - 2; k > 0; --k) {
-    M.col(k) = (M.col(k) - step(k) * M.col(k + 1)) / diagonal[k];
-  }
+  for (Index k = m - 2; k > 0; --k) M.col(k) = (M.col(k) - step(k) * M.col(k + 1)) / diagonal[k];
   return M;
 }
 

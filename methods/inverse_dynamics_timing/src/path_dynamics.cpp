@@ -38,8 +38,7 @@ VectorXd capOfTip(const InverseDynamicsSolver& solver, const MatrixXd& q, const 
 
 [[noreturn]] void refuseOption(const std::string& where, const std::string& expected,
                                const std::string& got) {
-  throw ids::InvalidParameterValueException(
-      ids::errorText("retime(): " + where, "", expected, got));
+  throw ids::InvalidParameterValueException("retime(): " + where, "", expected, got);
 }
 
 }  // namespace
@@ -214,9 +213,9 @@ void checkLimit(const InverseDynamicsSolver& solver, const char* name,
   if (limit.size() == 0) return;
   if (limit.size() != solver.jointCount()) {
     throw ids::SizeMismatchException(
-        ids::errorText(std::string("retime(): limits.") + name, "",
-                       std::to_string(solver.jointCount()) + " numbers, one per joint, or none",
-                       std::to_string(limit.size())));
+        std::string("retime(): limits.") + name, "",
+        std::to_string(solver.jointCount()) + " numbers, one per joint, or none",
+        std::to_string(limit.size()));
   }
   for (Index j = 0; j < limit.size(); ++j) {
     if (!(limit[j] > 0.0) || !std::isfinite(limit[j])) {
@@ -233,9 +232,9 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
            const RetimeOptions& options) {
   const Index n = solver.jointCount();
   if (path.jointCount() != n) {
-    throw ids::SizeMismatchException(
-        ids::errorText("retime(): path", "", std::to_string(n) + " joints, as the solver has",
-                       std::to_string(path.jointCount())));
+    throw ids::SizeMismatchException("retime(): path", "",
+                                     std::to_string(n) + " joints, as the solver has",
+                                     std::to_string(path.jointCount()));
   }
   checkLimit(solver, "torque", limits.torque);
   checkLimit(solver, "velocity", limits.velocity);

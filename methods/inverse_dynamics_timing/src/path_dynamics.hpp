@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
-#include <limits>
 
 #include "inverse_dynamics_timing/retime.hpp"
 

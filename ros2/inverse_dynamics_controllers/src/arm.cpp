@@ -17,7 +17,6 @@ using chain_dynamics::joined;
 using inverse_dynamics_control::FrictionSource;
 using inverse_dynamics_control::jointNumbers;
 using inverse_dynamics_control::LawOptions;
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::ParameterUninitializedException;
 
@@ -29,9 +28,9 @@ std::vector<std::string> hardwareNames(const std::string& parameter,
                                        const std::vector<std::string>& solvers) {
   if (given.empty() || given.size() == solvers.size()) return given.empty() ? solvers : given;
   throw InvalidParameterValueException(
-      errorText("parameter '" + parameter + "'", "wrong number of names",
-                std::to_string(solvers.size()) + ", in the order of " + joined(solvers),
-                std::to_string(given.size()) + " (" + joined(given) + ")", "correct them"));
+      "parameter '" + parameter + "'", "wrong number of names",
+      std::to_string(solvers.size()) + ", in the order of " + joined(solvers),
+      std::to_string(given.size()) + " (" + joined(given) + ")", "correct them");
 }
 
 // Declares parameters that are read by others than this package: by the solver, which alone knows
@@ -83,9 +82,9 @@ Setup ArmSource::setup(const std::string& managers_description, unsigned update_
   const ArmParameters parameters = parameters_->get_params();
   const inverse_dynamics_solver::SolverLoader loader;
   if (parameters.plugin_name.empty()) {
-    throw ParameterUninitializedException(
-        errorText("parameter 'plugin_name'", "not set", "a solver, package/Class", "nothing",
-                  "set it to one of " + joined(loader.availableSolvers())));
+    throw ParameterUninitializedException("parameter 'plugin_name'", "not set",
+                                          "a solver, package/Class", "nothing",
+                                          "set it to one of " + joined(loader.availableSolvers()));
   }
   const auto solver = loader.load(parameters.plugin_name);
   const std::string description =
@@ -136,10 +135,10 @@ LawOptions lawOptions(const Setup& setup, const std::string& friction_source) {
   options.limits.effort =
       jointNumbers("limits.effort", law.limits.effort, arm.joints, arm.limits.effort);
   if (law.limits.effort.empty() && !arm.limits.effort.allFinite()) {
-    throw ParameterUninitializedException(errorText(
+    throw ParameterUninitializedException(
         "parameter 'limits.effort'", "not set",
         "limits of effort [N m], here or in the robot description", "neither for all joints",
-        "set it; .inf where the robot limits its effort by itself"));
+        "set it; .inf where the robot limits its effort by itself");
   }
   options.limits.rate = jointNumbers("limits.effort_rate", law.limits.effort_rate, arm.joints, {});
   options.damping = changingDamping(setup).initial();

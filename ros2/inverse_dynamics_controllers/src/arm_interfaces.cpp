@@ -34,10 +34,10 @@ std::size_t find(const Interfaces& interfaces, const std::string& name, const ch
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     if (interfaces[i].get_name() == name) return i;
   }
-  throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
+  throw inverse_dynamics_solver::Exception(
       kind, "missing", name, std::to_string(interfaces.size()) + " others",
       "let the hardware component export it (<ros2_control> of the robot description), or correct "
-      "the parameters 'joints', 'command_joints' and 'command_interface'"));
+      "the parameters 'joints', 'command_joints' and 'command_interface'");
 }
 
 template <class Interfaces>

@@ -12,7 +12,6 @@ namespace inverse_dynamics_controllers {
 namespace {
 
 using inverse_dynamics_control::jointNumbers;
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::ParameterUninitializedException;
 using Numbers = std::vector<double>;
@@ -23,9 +22,9 @@ const char* const kPosture = "damping.posture";
 
 double requiredPeriod(const Setup& setup) {
   if (const double period = setup.period(); period > 0) return period;
-  throw ParameterUninitializedException(errorText(
+  throw ParameterUninitializedException(
       "parameter 'period'", "not set", "the period of the control loop [s], for damping.rate",
-      "nothing", "set it, or 'update_rate' [Hz], or 'damping.values'"));
+      "nothing", "set it, or 'update_rate' [Hz], or 'damping.values'");
 }
 
 // The joints' numbers, finite and >= 0.
@@ -34,9 +33,9 @@ Eigen::VectorXd givenDamping(const Numbers& values, const Arm& arm) {
   for (Eigen::Index j = 0; j < damping.size(); ++j) {
     if (damping[j] >= 0 && std::isfinite(damping[j])) continue;
     throw InvalidParameterValueException(
-        errorText("parameter 'damping.values': joint " + arm.joints[static_cast<std::size_t>(j)],
-                  "wrong value", "a finite number, 0 or more [N m s/rad]",
-                  std::to_string(damping[j]), "correct this number"));
+        "parameter 'damping.values': joint " + arm.joints[static_cast<std::size_t>(j)],
+        "wrong value", "a finite number, 0 or more [N m s/rad]", std::to_string(damping[j]),
+        "correct this number");
   }
   return damping;
 }
@@ -46,11 +45,11 @@ Eigen::VectorXd dampingOf(const Setup& setup, const ParameterValues& parameters)
   const auto values = parameters.at(kValues).get<Numbers>();
   if (!values.empty()) return givenDamping(values, arm);
   if (!arm.solver->inertiaIsPhysical()) {
-    throw InvalidParameterValueException(errorText(
+    throw InvalidParameterValueException(
         "parameter 'damping.values'", "not set", "a damping of each joint [N m s/rad]", "nothing",
         "set it: damping.rate needs a solver whose inertiaIsPhysical() is true, "
         "and that of " +
-            setup.parameters.plugin_name + " is false"));
+            setup.parameters.plugin_name + " is false");
   }
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.solver->jointCount());
   return inverse_dynamics_control::dampingFor(

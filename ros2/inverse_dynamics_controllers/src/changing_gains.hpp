@@ -4,15 +4,18 @@
 #pragma once
 
 #include <functional>
+#include <inverse_dynamics_control/parameter_watch.hpp>
 #include <memory>
+#include <rclcpp_lifecycle/lifecycle_node.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "latest_value.hpp"
-#include "parameter_watch.hpp"
 
 namespace inverse_dynamics_controllers {
+
+using ParameterWatch = inverse_dynamics_control::ParameterWatch<rclcpp_lifecycle::LifecycleNode>;
+using ParameterValues = ParameterWatch::Values;
 
 /// @tparam Gains  of the law; numbers of joints.
 template <class Gains>

@@ -60,10 +60,10 @@ class ControlLoop {
     interfaces_.read(states, state_);
     for (Eigen::Index j = 0; j < state_.q.size(); ++j) {
       if (std::isfinite(state_.q[j]) && std::isfinite(state_.qd[j])) continue;
-      throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
+      throw inverse_dynamics_solver::Exception(
           "joint " + interfaces_.joints()[static_cast<std::size_t>(j)], "no measured state",
           "a finite position and velocity", "NaN or infinity",
-          "see that the hardware component is active, and activate the controller again"));
+          "see that the hardware component is active, and activate the controller again");
     }
     fault_.reset();
     law.start();
@@ -137,9 +137,9 @@ inline controller_interface::InterfaceConfiguration nothing() {
 /// Throws inverse_dynamics_solver::Exception unless a controller is configured.
 inline void requireConfigured(bool configured) {
   if (configured) return;
-  throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
-      "activation", "the controller has no solver", "a controller that is configured",
-      "one that isn't", "configure it first, and see that this succeeds"));
+  throw inverse_dynamics_solver::Exception("activation", "the controller has no solver",
+                                           "a controller that is configured", "one that isn't",
+                                           "configure it first, and see that this succeeds");
 }
 
 /// Runs a transition; an exception is logged, and fails it.

@@ -20,7 +20,6 @@ using inverse_dynamics_control::EstimateStatus;
 using inverse_dynamics_control::Estimator;
 using inverse_dynamics_control::jointNumbers;
 using inverse_dynamics_control::VelocitySource;
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::ParameterUninitializedException;
 using Parameters = external_wrench_broadcaster::Params;
@@ -37,27 +36,26 @@ Estimator estimatorOf(const std::string& name) {
 void requireNoise(const std::vector<double>& noise) {
   if (!noise.empty()) return;
   throw ParameterUninitializedException(
-      errorText("parameter 'noise'", "not set",
-                "the standard deviation of the external torque of each joint without contact [N m]",
-                "nothing",
-                "take it from contacts.json of `ids contact`, or from ~/external_torques at rest"));
+      "parameter 'noise'", "not set",
+      "the standard deviation of the external torque of each joint without contact [N m]",
+      "nothing", "take it from contacts.json of `ids contact`, or from ~/external_torques at rest");
 }
 
 // Cycles that are all gaps would give no estimate ever.
 void requireShortPeriod(double period, double longest) {
   if (period <= longest) return;
   throw InvalidParameterValueException(
-      errorText("parameter 'longest_period'", "shorter than the period of the control loop",
-                "more than " + std::to_string(period) + " s", std::to_string(longest),
-                "set it to a few periods, or raise 'update_rate'"));
+      "parameter 'longest_period'", "shorter than the period of the control loop",
+      "more than " + std::to_string(period) + " s", std::to_string(longest),
+      "set it to a few periods, or raise 'update_rate'");
 }
 
 std::string frameOf(const Setup& setup, const Parameters& params) {
   std::string frame = params.frame_id.empty() ? setup.tip() : params.frame_id;
   if (!frame.empty()) return frame;
   throw ParameterUninitializedException(
-      errorText("parameter 'frame_id'", "not set", "the frame of the wrench, the arm's tip",
-                "neither it nor 'ids.tip'", "set it to the name of the tip's link"));
+      "parameter 'frame_id'", "not set", "the frame of the wrench, the arm's tip",
+      "neither it nor 'ids.tip'", "set it to the name of the tip's link");
 }
 
 ContactOptions optionsOf(const Setup& setup, const Parameters& params) {

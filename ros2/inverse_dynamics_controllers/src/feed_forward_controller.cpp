@@ -30,10 +30,10 @@ ModelState modelState(const feed_forward_controller::Params& params,
 
 void requireReferenceVelocity(const LawOptions& options, const ReferenceLayout& layout) {
   if (layout.hasMotion() || options.friction.source != FrictionSource::kReferenceVelocity) return;
-  throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
+  throw inverse_dynamics_solver::InvalidParameterValueException(
       "parameter 'friction.source'", "no such velocity",
       "none or measured_velocity, as reference_interfaces has no velocity", "reference_velocity",
-      "set one of them"));
+      "set one of them");
 }
 
 // Own gains about a reference in addition to the model's torque.

@@ -5,7 +5,6 @@
 
 #include <inverse_dynamics_control/pd_gravity_compensation.hpp>
 #include <inverse_dynamics_controllers/reference_parameters.hpp>
-#include <memory>
 #include <utility>
 #include <vector>
 

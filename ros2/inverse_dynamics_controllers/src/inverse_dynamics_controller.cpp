@@ -16,7 +16,6 @@ namespace inverse_dynamics_controllers {
 using inverse_dynamics_control::ComputedTorque;
 using inverse_dynamics_control::Gains;
 using inverse_dynamics_control::jointNumbers;
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 
 namespace {
@@ -25,11 +24,11 @@ namespace {
 void requirePhysicalInertia(const Setup& setup) {
   if (setup.arm.solver->inertiaIsPhysical()) return;
   throw InvalidParameterValueException(
-      errorText("parameter 'plugin_name'", "not fit for computed torque",
-                "a solver whose inertia matrix is symmetric and positive definite",
-                setup.parameters.plugin_name + ", whose inertiaIsPhysical() is false",
-                "use inverse_dynamics_controllers/FeedForwardController with it, or here a solver "
-                "made from the robot's URDF"));
+      "parameter 'plugin_name'", "not fit for computed torque",
+      "a solver whose inertia matrix is symmetric and positive definite",
+      setup.parameters.plugin_name + ", whose inertiaIsPhysical() is false",
+      "use inverse_dynamics_controllers/FeedForwardController with it, or here a solver "
+      "made from the robot's URDF");
 }
 
 // The feedback is that of a double integrator in steps of T: it is stable for Kp T < 2 Kd < 4 / T.
@@ -40,9 +39,9 @@ void requireStableLoop(const Gains& gains, double period, const std::vector<std:
     std::ostringstream got;
     got << "Kp = " << Kp << "/s^2, Kd = " << Kd << "/s every " << period << " s";
     throw InvalidParameterValueException(
-        errorText("parameter 'gains': joint " + joints[static_cast<std::size_t>(j)],
-                  "unstable in the sampled loop", "Kp T <= 2 Kd and Kd T < 2", got.str(),
-                  "lower natural_frequency; a damping_ratio of 1 suits most arms"));
+        "parameter 'gains': joint " + joints[static_cast<std::size_t>(j)],
+        "unstable in the sampled loop", "Kp T <= 2 Kd and Kd T < 2", got.str(),
+        "lower natural_frequency; a damping_ratio of 1 suits most arms");
   }
 }
 
@@ -51,8 +50,8 @@ Gains gainsOf(const std::vector<double>& natural_frequency,
               const std::vector<std::string>& joints) {
   if (natural_frequency.empty()) {
     throw inverse_dynamics_solver::ParameterUninitializedException(
-        errorText("parameter 'gains.natural_frequency'", "not set", "numbers above zero [rad/s]",
-                  "nothing", "start with 10 and double it while the arm is quiet"));
+        "parameter 'gains.natural_frequency'", "not set", "numbers above zero [rad/s]", "nothing",
+        "start with 10 and double it while the arm is quiet");
   }
   const Gains gains = Gains::of(jointNumbers("gains.natural_frequency", natural_frequency, joints),
                                 jointNumbers("gains.damping_ratio", damping_ratio, joints));

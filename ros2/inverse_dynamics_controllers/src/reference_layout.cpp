@@ -23,10 +23,9 @@ ReferenceLayout::ReferenceLayout(const std::vector<std::string>& interfaces,
   const bool part = has(kPosition) || has(kVelocity) || has(kAcceleration);
   if (motion != part || (!motion && !hasEffort())) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
-        inverse_dynamics_solver::errorText("parameter 'reference_interfaces'", "not a motion",
-                                           "position and velocity, acceleration only beside them",
-                                           interfaces.empty() ? "nothing" : joined(interfaces),
-                                           "add what is missing"));
+        "parameter 'reference_interfaces'", "not a motion",
+        "position and velocity, acceleration only beside them",
+        interfaces.empty() ? "nothing" : joined(interfaces), "add what is missing");
   }
   for (const std::string& joint : joints) {
     for (const std::string& interface : interfaces) names_.push_back(joint + "/" + interface);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chain_dynamics/located_yaml.hpp>
-#include <cmath>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
 
 #include "user_error.hpp"

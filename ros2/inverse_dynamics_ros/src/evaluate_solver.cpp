@@ -16,9 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "interrupted.hpp"
-#include "node_solver.hpp"
 #include "output_bag.hpp"
+#include "robot_parameters.hpp"
 #include "run_program.hpp"
 #include "torque_bag.hpp"
 #include "user_error.hpp"

@@ -9,7 +9,6 @@
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
 #include <geometry_msgs/msg/vector3.hpp>
 #include <inverse_dynamics_control/joint_parameters.hpp>
-#include <optional>
 #include <sstream>
 #include <utility>
 

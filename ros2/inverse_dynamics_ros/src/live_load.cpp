@@ -2,7 +2,8 @@
 
 #include "live_load.hpp"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
+#include <chain_dynamics/joint_frame.hpp>
 #include <chrono>
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
@@ -10,7 +11,6 @@
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "overridable.hpp"
 
@@ -18,25 +18,15 @@ namespace inverse_dynamics_ros {
 namespace {
 
 using geometry_msgs::msg::Vector3Stamped;
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::VariableGravity;
 using sensor_msgs::msg::Imu;
 
 constexpr std::chrono::milliseconds kStep(10);
 [[noreturn]] void throwUnchangeable(const std::string& plugin) {
-  throw InvalidParameterValueException(errorText("gravity", "the solver's gravity can't change",
-                                                 "a solver with the capability VariableGravity",
-                                                 plugin, "use another solver, or set ids.gravity"));
-}
-
-// Turns about the fixed axes x, y, z, in this order.
-Eigen::Matrix3d rotation(const std::vector<double>& rpy) {
-  using Eigen::AngleAxisd;
-  using Eigen::Vector3d;
-  return (AngleAxisd(rpy[2], Vector3d::UnitZ()) * AngleAxisd(rpy[1], Vector3d::UnitY()) *
-          AngleAxisd(rpy[0], Vector3d::UnitX()))
-      .toRotationMatrix();
+  throw InvalidParameterValueException("gravity", "the solver's gravity can't change",
+                                       "a solver with the capability VariableGravity", plugin,
+                                       "use another solver, or set ids.gravity");
 }
 
 }  // namespace
@@ -79,7 +69,8 @@ void LiveLoad::use(std::shared_ptr<PayloadRamp> ramp, const LiveRobot& robot) {
 void LiveLoad::openImu() {
   imu_.emplace(params_.use == "orientation" ? GravityFromImu::Source::kOrientation
                                             : GravityFromImu::Source::kAcceleration,
-               rotation(params_.rpy), params_.time_constant, variable_->gravity());
+               chain_dynamics::rotationFromRollPitchYaw(Eigen::Vector3d(params_.rpy.data())),
+               params_.time_constant, variable_->gravity());
 }
 
 void LiveLoad::takeGravity(const Vector3Stamped& message) {
@@ -87,8 +78,8 @@ void LiveLoad::takeGravity(const Vector3Stamped& message) {
     inverse_dynamics_control::requireFrame(message.header.frame_id, robot_.root, "root");
     if (imus_ != nullptr) {
       throw InvalidParameterValueException(
-          errorText("gravity", "of another source", "nothing", "a message",
-                    "gravity comes from the IMU: set gravity_from_imu.use to nothing"));
+          "gravity", "of another source", "nothing", "a message",
+          "gravity comes from the IMU: set gravity_from_imu.use to nothing");
     }
     if (variable_ == nullptr) throwUnchangeable(robot_.plugin);
     const Eigen::Vector3d gravity(message.vector.x, message.vector.y, message.vector.z);

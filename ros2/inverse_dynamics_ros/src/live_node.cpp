@@ -20,8 +20,8 @@
 #include "live_load.hpp"
 #include "live_payload_services.hpp"
 #include "live_torques.hpp"
-#include "node_solver.hpp"
 #include "overridable.hpp"
+#include "robot_parameters.hpp"
 #include "user_error.hpp"
 
 namespace inverse_dynamics_ros {

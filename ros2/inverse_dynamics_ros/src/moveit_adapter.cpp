@@ -19,8 +19,8 @@
 #include <rclcpp/node.hpp>
 #include <string>
 
-#include "node_solver.hpp"
 #include "retiming.hpp"
+#include "robot_parameters.hpp"
 
 namespace inverse_dynamics_ros {
 

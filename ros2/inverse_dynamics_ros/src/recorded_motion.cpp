@@ -12,7 +12,6 @@
 #include <trajectory_msgs/msg/joint_trajectory_point.hpp>
 #include <utility>
 
-#include "interrupted.hpp"
 #include "user_error.hpp"
 
 namespace inverse_dynamics_ros {

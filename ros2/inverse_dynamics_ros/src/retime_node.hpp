@@ -9,11 +9,10 @@
 #include <exception>
 #include <inverse_dynamics_msgs/srv/retime.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
-#include <memory>
 #include <rclcpp/rclcpp.hpp>
 
-#include "node_solver.hpp"
 #include "retiming.hpp"
+#include "robot_parameters.hpp"
 
 namespace inverse_dynamics_ros {
 

@@ -12,6 +12,7 @@
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/parameters.hpp>
 #include <memory>
+#include <rclcpp/node.hpp>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,17 @@ namespace inverse_dynamics_ros {
 
 /// Namespace of a solver's parameters in a node.
 inline const std::string kSolverNamespace = "ids";
+
+/// Declares robot_parameters.yaml, and what the user gives below `ids.`: which parameters a solver
+/// has, only it knows.
+void declareRobotParameters(rclcpp::Node& node);
+
+/// Parameters that are set from outside (launch file, command line), without defaults.
+///
+/// @param prefix  selects names, and is removed from them: `retime.`.
+/// @throws inverse_dynamics_solver::InvalidParameterValueException: byte arrays.
+inverse_dynamics_solver::Parameters givenParameters(rclcpp::Node& node,
+                                                    const std::string& prefix = "");
 
 /// The robot of a node's parameters.
 class NodeRobot {

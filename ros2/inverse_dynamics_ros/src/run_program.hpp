@@ -8,7 +8,6 @@
 #include <exception>
 #include <rclcpp/rclcpp.hpp>
 
-#include "interrupted.hpp"
 #include "user_error.hpp"
 
 namespace inverse_dynamics_ros {

@@ -7,8 +7,8 @@
 #include <trajectory_msgs/msg/joint_trajectory_point.hpp>
 #include <vector>
 
-#include "interrupted.hpp"
 #include "output_bag.hpp"
+#include "user_error.hpp"
 
 namespace inverse_dynamics_ros {
 namespace {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// A mistake a user can repair, and the exit codes of this package's programs.
+/// Why programs of this package end without a result: a mistake a user can repair, or Ctrl-C; and
+/// their exit codes.
 
 #pragma once
 
 #include <exception>
+#include <rclcpp/utilities.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -19,6 +21,17 @@ class UserError : public std::runtime_error {
             const std::string& remedy)
       : std::runtime_error(where + ": expected " + expected + ", got " + got + "; " + remedy) {}
 };
+
+/// The user wants the program to end.
+class Interrupted : public std::exception {
+ public:
+  const char* what() const noexcept override { return "interrupted; nothing was written"; }
+};
+
+/// @throws Interrupted: rclcpp was shut down, by Ctrl-C for one.
+inline void requireNoInterrupt() {
+  if (!rclcpp::ok()) throw Interrupted();
+}
 
 /// Exit codes of the programs; the same as the command line's.
 enum ExitCode {

@@ -9,7 +9,6 @@
 #include <rclcpp/utilities.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
 
-#include "interrupted.hpp"
 #include "output_bag.hpp"
 #include "user_error.hpp"
 

@@ -17,15 +17,13 @@
 namespace inverse_dynamics_simulation {
 namespace {
 
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidRobotDescriptionException;
 
 constexpr double kLongestStep = 1e-3;  // s
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw InvalidRobotDescriptionException(
-      errorText("robot description", "MuJoCo refuses it", "", what,
-                "simple shapes instead of meshes are understood"));
+  throw InvalidRobotDescriptionException("robot description", "MuJoCo refuses it", "", what,
+                                         "simple shapes instead of meshes are understood");
 }
 
 void attach(const Payload& payload, mjSpec& spec) {

@@ -119,9 +119,7 @@ std::vector<hardware_interface::StateInterface> SimulatedArm::export_state_inter
 
 std::vector<hardware_interface::CommandInterface> SimulatedArm::export_command_interfaces() {
   std::vector<hardware_interface::CommandInterface> interfaces;
-  for (Joint& joint : joints_) {
-    interfaces.emplace_back(joint.name, HW_IF_EFFORT, &joint.command);
-  }
+  for (Joint& joint : joints_) interfaces.emplace_back(joint.name, HW_IF_EFFORT, &joint.command);
   return interfaces;
 }
 #pragma GCC diagnostic pop

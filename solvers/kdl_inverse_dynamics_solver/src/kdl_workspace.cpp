@@ -18,10 +18,10 @@ namespace {
 /// swallowed.
 void check(int code, const KDL::SolverI& solver, const char* what) {
   if (code == KDL::SolverI::E_NOERROR) return;
-  throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
+  throw inverse_dynamics_solver::Exception(
       what, "KDL failed", "",
       std::string(solver.strError(code)) + " (" + std::to_string(code) + ")",
-      "report this with the robot description and the joint state"));
+      "report this with the robot description and the joint state");
 }
 
 KDL::Chain extended(KDL::Chain chain, const KDL::Frame& tip) {

@@ -18,7 +18,6 @@ inline namespace v2 {
 namespace {
 
 using chain_dynamics::joined;
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::Exception;
 using std::filesystem::path;
 
@@ -39,16 +38,16 @@ bool isPath(const path& name_or_path) {
 path modelFile(const std::string& name_or_path) {
   if (isPath(name_or_path)) {
     if (std::filesystem::is_regular_file(name_or_path)) return name_or_path;
-    throw Exception(errorText("model file '" + name_or_path + "'", "not found", "a model file",
-                              "nothing at that path",
-                              "give its path, or the name of an installed model, without .yaml: " +
-                                  joined(installedModels())));
+    throw Exception("model file '" + name_or_path + "'", "not found", "a model file",
+                    "nothing at that path",
+                    "give its path, or the name of an installed model, without .yaml: " +
+                        joined(installedModels()));
   }
   path file = modelsFolder() / (name_or_path + ".yaml");
   if (std::filesystem::is_regular_file(file)) return file;
-  throw Exception(errorText("model '" + name_or_path + "'", "not found",
-                            "one of " + joined(installedModels()), "'" + name_or_path + "'",
-                            "for a file of your own, give its path, ending in .yaml"));
+  throw Exception("model '" + name_or_path + "'", "not found",
+                  "one of " + joined(installedModels()), "'" + name_or_path + "'",
+                  "for a file of your own, give its path, ending in .yaml");
 }
 
 }  // namespace
@@ -56,9 +55,8 @@ path modelFile(const std::string& name_or_path) {
 std::vector<std::string> installedModels() {
   const path folder = modelsFolder();
   if (!std::filesystem::is_directory(folder)) {
-    throw Exception(errorText(std::string("package ") + kDataPackage, "incomplete",
-                              "a folder of models", folder.string() + " isn't there",
-                              "install the package again"));
+    throw Exception(std::string("package ") + kDataPackage, "incomplete", "a folder of models",
+                    folder.string() + " isn't there", "install the package again");
   }
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -33,7 +33,6 @@ using chain_dynamics::Chain;
 using chain_dynamics::FastModel;
 using chain_dynamics::joined;
 using inverse_dynamics_solver::DescriptionFriction;
-using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::ParameterUninitializedException;
@@ -52,10 +51,10 @@ chain_dynamics::Model modelOfFile(const Configuration& configuration, const std:
 Chain chainOfDescription(const Configuration& configuration) {
   if (configuration.robot_description.empty()) {
     throw ParameterUninitializedException(
-        errorText("robot description", "missing", "the text of a URDF, or a model file", "neither",
-                  "pass a URDF to initialize() as third argument, or set the parameter "
-                  "'robot_description' (without namespace) or '" +
-                      configuration.fullName("model") + "'"));
+        "robot description", "missing", "the text of a URDF, or a model file", "neither",
+        "pass a URDF to initialize() as third argument, or set the parameter "
+        "'robot_description' (without namespace) or '" +
+            configuration.fullName("model") + "'");
   }
   return chainFromDescription(configuration);
 }
@@ -180,9 +179,9 @@ std::vector<std::string> warningsOf(const chain_dynamics::Model& model, bool ine
 void requireFewEnough(const Chain& chain) {
   if (chain.jointCount() <= FastModel::kMaxJoints) return;
   throw inverse_dynamics_solver::InvalidRobotDescriptionException(
-      errorText("robot", "too many joints", "at most " + std::to_string(FastModel::kMaxJoints),
-                std::to_string(chain.jointCount()),
-                "name root and tip of a shorter chain, or use the solver of Pinocchio or KDL"));
+      "robot", "too many joints", "at most " + std::to_string(FastModel::kMaxJoints),
+      std::to_string(chain.jointCount()),
+      "name root and tip of a shorter chain, or use the solver of Pinocchio or KDL");
 }
 
 }  // namespace

@@ -24,12 +24,12 @@ auto InverseDynamicsSolverUR10::configure(
   // An overlaid workspace may bring another file of that name.
   if (model.chain.jointCount() != NUMBER_OF_JOINTS ||
       model.drive_gains.size() != NUMBER_OF_JOINTS) {
-    throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
+    throw inverse_dynamics_solver::Exception(
         std::string("model ") + kModel, "not a UR10's",
         std::to_string(NUMBER_OF_JOINTS) + " joints with a drive gain each",
         std::to_string(model.chain.jointCount()) + " joints, " +
             std::to_string(model.drive_gains.size()) + " drive gains",
-        "for another robot use rigid_body_inverse_dynamics_solver with its model"));
+        "for another robot use rigid_body_inverse_dynamics_solver with its model");
   }
   return use(std::move(model), configuration);
 }

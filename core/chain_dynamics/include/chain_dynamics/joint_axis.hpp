@@ -52,9 +52,7 @@ template <typename Scalar>
 Force<Scalar> timesAxis(const SpatialInertia<Scalar>& I, const Joint& joint) {
   const Scalar zero(0);
   const Vector3<Scalar> mc_x_z(I.first_moment.y(), -I.first_moment.x(), zero);
-  if (isPrismatic(joint)) {
-    return {mc_x_z, Vector3<Scalar>(zero, zero, I.mass)};
-  }
+  if (isPrismatic(joint)) return {mc_x_z, Vector3<Scalar>(zero, zero, I.mass)};
   return {I.inertia.col(2), -mc_x_z};
 }
 

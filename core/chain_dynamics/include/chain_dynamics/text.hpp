@@ -43,6 +43,9 @@ std::string printable(const std::string& text, std::size_t longest = 500);
 /// Whether a text is UTF-8 without control characters: what a name may be made of.
 bool isPrintable(const std::string& text);
 
+/// Where the first character that isn't UTF-8 begins; the text's size if all are.
+std::size_t firstNotUtf8(const std::string& text);
+
 /// A number with up to so many significant digits: `0.1`, `-9.81`, `1e+20`.
 std::string numberText(double value, int digits = 6);
 

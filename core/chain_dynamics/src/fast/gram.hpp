@@ -132,9 +132,7 @@ inline void addRows(const Robot& robot, int states, const GramInputs& inputs, co
     const std::ptrdiff_t size = own.size + of_links.size;
     addProducts(own, own, states, sums, size);
     addProducts(own, of_links, states, sums + own.size, size);
-    if (inputs.links) {
-      addProducts(of_links, of_links, states, sums + own.size * (size + 1), size);
-    }
+    if (inputs.links) addProducts(of_links, of_links, states, sums + own.size * (size + 1), size);
     own.numbers += kGramStates * own.size;
     links += kGramStates * of_links.size;
     sums += size * size;

@@ -54,9 +54,7 @@ struct Flow {
     constexpr Twist kTwist = S::twist(I());
     const Placement& X = robot.placements[i];
     const Turn<V> t{state.c[i], state.s[i], X};
-    if (S::kMixed && X.prismatic) {
-      addTo(z, {p.x * state.q[i], p.y * state.q[i], p.z * state.q[i]});
-    }
+    if (S::kMixed && X.prismatic) addTo(z, {p.x * state.q[i], p.y * state.q[i], p.z * state.q[i]});
     p = outOf<kTwist>(t, p);
     x = outOf<kTwist>(t, x);
     y = outOf<kTwist>(t, y);

@@ -36,6 +36,8 @@ inline namespace v2 {
 /// virtual `compute...`. Every quantity comes by value, into memory of the caller, and for many
 /// states at once (`...Batch`: one state per column); joints, units, errors (uninitialized, wrong
 /// size), and the promises about NaN, real time and threads are those of InverseDynamicsSolver.
+/// Destructors are out of line, so that there is one type information for dynamic_cast across
+/// plugin libraries.
 class Capability {
  public:
   virtual ~Capability();

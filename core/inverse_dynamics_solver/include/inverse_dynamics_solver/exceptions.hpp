@@ -14,34 +14,31 @@
 #include <stdexcept>
 #include <string>
 
+#include "chain_dynamics/text.hpp"
+
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
-/// Text of every error: `where: what: expected ..., got ...; remedy`. Empty parts are left out.
-///
-/// Each part is printable and of limited length [chain_dynamics/text.hpp].
-///
-/// @param where     parameter with its namespace, file with its line, or method and argument.
-/// @param what      the mistake, in a few words.
-/// @param expected  what would have been right.
-/// @param got       what was found.
-/// @param remedy    what to do now.
-std::string errorText(const std::string& where, const std::string& what,
-                      const std::string& expected = "", const std::string& got = "",
-                      const std::string& remedy = "");
+/// Text of every error: `where: what: expected ..., got ...; remedy`.
+using chain_dynamics::errorText;
 
 /// Root of the family. Reaction: report `what()`, use another solver or none.
 class Exception : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+  /// The text is that of errorText().
+  Exception(const std::string& where, const std::string& what, const std::string& expected = "",
+            const std::string& got = "", const std::string& remedy = "")
+      : std::runtime_error(errorText(where, what, expected, got, remedy)) {}
 };
 
 /// A method was called before a successful initialize(). Reaction: initialize.
 class UninitializedException : public Exception {
  public:
-  UninitializedException();
   /// @param method  the method that was called too early.
-  explicit UninitializedException(const std::string& method);
+  explicit UninitializedException(const std::string& method = "solver")
+      : Exception(method, "the solver is not initialized", "", "",
+                  "call initialize() first, and see that it doesn't throw") {}
 };
 
 /// A parameter without a default is missing. Reaction: set it.

@@ -66,9 +66,7 @@ std::shared_ptr<void> suggestDeclared(Interface& node) {
       constexpr std::uint64_t kAllDepths = 0;
       const std::vector<std::string> declared = node.list_parameters({}, kAllDepths).names;
       try {
-        for (const auto& parameter : parameters) {
-          rejectUndeclared({parameter.get_name()}, declared);
-        }
+        for (const auto& parameter : parameters) rejectUndeclared({parameter.get_name()}, declared);
       } catch (const InvalidParameterValueException& error) {
         throw NotDeclared(error.what());
       }

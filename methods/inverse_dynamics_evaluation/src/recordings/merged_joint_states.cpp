@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "../figures.hpp"
-#include "../pi.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "inverse_dynamics_evaluation/joint_matching.hpp"
 #include "text.hpp"
@@ -128,7 +127,7 @@ class Part {
     for (std::size_t i = 0; i < targets_.size(); ++i) {
       const double from = between ? before_.numbers[i] : after_.numbers[i], to = after_.numbers[i];
       // the nearer of two positions between which a driver has left out a turn
-      const double part = std::abs(to - from) > kPi ? std::round(share) : share;
+      const double part = std::abs(to - from) > M_PI ? std::round(share) : share;
       fields[targets_[i].field][targets_[i].joint] = from + part * (to - from);
     }
     return true;

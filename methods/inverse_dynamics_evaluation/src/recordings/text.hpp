@@ -3,7 +3,6 @@
 /// What is wrong with a file, and words for it.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -28,9 +27,6 @@ std::string counted(std::int64_t count, const std::string& noun);
 
 /// The beginning of a text, in quotes, printable.
 std::string quoted(const std::string& text);
-
-/// Whether bytes are UTF-8: no overlong form, no surrogate.
-bool isUtf8(const char* text, std::size_t size);
 
 /// @throws DamageError: the text isn't UTF-8; what: what it is.
 void requireUtf8(const std::string& text, const char* what);

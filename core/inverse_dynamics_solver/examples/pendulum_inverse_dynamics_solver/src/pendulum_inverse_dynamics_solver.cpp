@@ -14,9 +14,9 @@ auto InverseDynamicsSolverPendulum::configure(const Configuration& configuration
   const auto length = configuration.require<double>("length");
   const double damping = configuration.get<double>("damping").value_or(0.0);
   if (!(mass > 0.0) || !(length > 0.0)) {
-    throw InvalidParameterValueException(inverse_dynamics_solver::errorText(
+    throw InvalidParameterValueException(
         configuration.fullName("mass") + ", " + configuration.fullName("length"), "wrong value",
-        "positive numbers [kg, m]", std::to_string(mass) + ", " + std::to_string(length)));
+        "positive numbers [kg, m]", std::to_string(mass) + ", " + std::to_string(length));
   }
   configuration.rejectOthers();
   JointInfo info;
