@@ -45,7 +45,7 @@ double termsOf(const Chain& chain, const State<double>& state, const MatrixX<dou
   return largest(C) + largest(rateOfInertia(chain, state.q, state.qd));
 }
 
-// Of H in inertia_matrix_test.cpp: with k = m2 l1 l2,
+// Of H in torques_test.cpp: with k = m2 l1 l2,
 //   C = k sin q2 [-qd2, -(qd1 + qd2); qd1, 0]
 TEST(CoriolisMatrix, OfADoublePendulumByHand) {
   const Chain chain = doublePendulum(1.5, 0.6, 0.8, 0.4, 9.81);
@@ -55,16 +55,6 @@ TEST(CoriolisMatrix, OfADoublePendulumByHand) {
   EXPECT_TRUE(
       agree(coriolisMatrixOf<double>(chain, Eigen::Vector2d(0.4, -1.1), Eigen::Vector2d(1.3, 0.9)),
             expected, 1, kByHand));
-}
-
-// A mass at radius r on a turntable: H = diag(m r^2, m).
-TEST(CoriolisMatrix, OfATurntableWithASlideByHand) {
-  const double m = 3, r = 0.4, rd = -0.7, phid = 2;
-  Eigen::Matrix2d expected;
-  expected << m * r * rd, m * r * phid, -m * r * phid, 0;
-  EXPECT_TRUE(agree(
-      coriolisMatrixOf<double>(turntable(m), Eigen::Vector2d(0.3, r), Eigen::Vector2d(phid, rd)),
-      expected, 1, kByHand));
 }
 
 TEST(CoriolisMatrix, TimesVelocityIsTheCoriolisVector) {
@@ -95,14 +85,6 @@ TEST(CoriolisMatrix, IsZeroAtRestAndIgnoresGravityAndTheFirstJoint) {
   VectorX<double> turned = state.q;
   turned[0] += 1;
   EXPECT_EQ(coriolisMatrixOf(chain, turned, state.qd), C);
-}
-
-// Powers of two are exact, so is the result.
-TEST(CoriolisMatrix, GrowsWithTheVelocity) {
-  forEachState([](const Chain& chain, const State<double>& state) {
-    EXPECT_EQ(coriolisMatrixOf<double>(chain, state.q, -4 * state.qd),
-              -4 * coriolisMatrixOf(chain, state.q, state.qd));
-  });
 }
 
 }  // namespace

@@ -97,38 +97,6 @@ TEST(Friction, SmoothCoulombIsItsFormula) {
   }
 }
 
-TEST(Friction, SmoothCoulombWorkedByHand) {
-  // far from the step, whose width is 0.01 rad/s
-  EXPECT_NEAR(friction(SmoothCoulomb{2, 3, 0.01, 0, 0.5, 0.25}, 1, -8), 2 + 0.5 + 3 + 2, kRounding);
-  EXPECT_NEAR(friction(SmoothCoulomb{2, 3, 0.01, 0, 0.5, 0.25}, -1, -8), -2 + 0.5 - 3 - 2,
-              kRounding);
-  EXPECT_EQ(friction(SmoothCoulomb{2, 3, 0.01}, 0, 100), 0);
-  // where the step is
-  EXPECT_EQ(friction(SmoothCoulomb{2, 3, 0.01, -0.25, 0.5, 0.25}, 0.25, 100), 2 * 0.25 + 0.5);
-  // fs adds to fc at rest, and 1/e of it at vs
-  const double at_vs = friction(SmoothCoulomb{0, 3, 1e-3, 0, 0, 0, 2, 0.5}, 0.5, 0);
-  EXPECT_NEAR(at_vs, 3 + 2 / std::exp(1.0), kRounding);
-}
-
-/// Friction without offset and shift takes energy from a motion in either direction, whatever the
-/// load.
-TEST(Friction, SmoothCoulombWithoutOffsetAndShiftDoesNoPositiveWork) {
-  for (SmoothCoulomb law : {kLoaded, kStribeck, kBoth}) {
-    law.fo = law.shift = 0;
-    for (double qd = -3.0; qd <= 3.0; qd += 0.001) {
-      for (const double g : {0.0, 5.0, -80.0}) {
-        ASSERT_GE(qd * friction(law, qd, g), 0.0) << "qd " << qd << " g " << g;
-      }
-    }
-  }
-}
-
-TEST(Friction, GrowsWithVelocityWithoutStribeckEffect) {
-  for (double qd = -3.0; qd < 3.0; qd += 0.001) {
-    ASSERT_LT(friction(kLoaded, qd, 20.0), friction(kLoaded, qd + 0.001, 20.0)) << qd;
-  }
-}
-
 TEST(Friction, DependsOnTheMagnitudeOfTheLoadWithALoadCoefficientOnly) {
   for (const FrictionLaw& law : kAllLaws) {
     const bool depends = friction(law, 0.7, 10.0) != friction(law, 0.7, 0.0);

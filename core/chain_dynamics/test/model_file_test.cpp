@@ -13,8 +13,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <locale>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -108,44 +106,6 @@ TEST(ModelFile, StandardDenavitHartenbergIsTheTextbooks) {
   expectGravityOfTextbook("standard_dh", false);
 }
 
-// Modified parameters with index i-1 are standard ones whose link frames stand at the far end: the
-// same robot, if each link's parameters are moved along.
-TEST(ModelFile, StandardAndModifiedDescribeTheSameRobot) {
-  // standard: T_i = RotZ TransZ TransX(a_i) RotX(alpha_i); modified joint i has a, alpha of i-1
-  const std::string standard = joint("one", withLink(dh("0.3", "0.4", "0.5", "0.6"))) +
-                               joint("two", withLink(dh("-0.2", "-1.1", "0.7", "0.1")));
-  const Model in_standard = model(file("standard_dh", standard));
-
-  const auto moved = [](double a, double alpha) {
-    const Eigen::Matrix3d R = Eigen::AngleAxisd(alpha, Eigen::Vector3d::UnitX()).toRotationMatrix();
-    Vector10<double> p;
-    p << 2, 0.2, 0.4, 0.6, 0.5, -0.03, -0.04, 0.6, -0.05, 0.7;
-    const Transform<double> X{R, Eigen::Vector3d(a, 0, 0)};
-    const Vector10<double> q = (X * LinkParameters::fromVector(p)).toVector();
-    std::ostringstream text;
-    text.precision(17);
-    for (Eigen::Index k = 0; k < 10; ++k) {
-      text << (k == 0 ? "[" : ", ") << q[k];
-    }
-    return "  link: " + text.str() + "]";
-  };
-  const Model in_modified = model(
-      file("modified_dh", joint("one", dh("0", "0", "0.5", "0.6") + moved(0.3, 0.4)) +
-                              joint("two", dh("0.3", "0.4", "0.7", "0.1") + moved(-0.2, -1.1))));
-  EXPECT_LT(difference(someTorques(in_standard), someTorques(in_modified)), kRounding);
-}
-
-// The same for a placement: RotX(alpha) TransX(a) TransZ(d) RotZ(offset), written out.
-TEST(ModelFile, PlacementAndModifiedDescribeTheSameRobot) {
-  const Model in_dh =
-      model(file("modified_dh", joint("one", withLink(dh("0.3", "0.5", "0", "0")))));
-  const Model placed = model(
-      file("placements",
-           joint("one",
-                 withLink("placement: {xyz: [0.3, 0, 0], rpy: [0.5, 0, 0], axis: [0, 0, 1]}\n"))));
-  EXPECT_LT(difference(someTorques(in_dh), someTorques(placed)), kRounding);
-}
-
 TEST(ModelFile, PlacementsMeanWhatTheyMeanInAUrdf) {
   const Model placed = model(replaced(
       file("placements",
@@ -161,19 +121,6 @@ TEST(ModelFile, PlacementsMeanWhatTheyMeanInAUrdf) {
         <origin xyz="0.1 0.2 0.3" rpy="0.4 0.5 0.6"/><axis xyz="1 -2 -3"/></joint>
     </robot>)"));
   EXPECT_LT(difference(someTorques(placed), someTorques(in_urdf)), kRounding);
-}
-
-TEST(ModelFile, AxisOfAPlacementTurnsTheLinkFrameOnlyInside) {
-  // about y of frame 1: the link's z component of mc and its Iyy, about the same origin
-  const Model robot = model(file(
-      "placements",
-      joint("one", withLink("placement: {xyz: [0, 0, 1], rpy: [0, 0, 0], axis: [0, 2, 0]}\n"))));
-  Eigen::MatrixXd H(1, 1);
-  Eigen::VectorXd g(1);
-  inertiaMatrix(robot, Eigen::VectorXd::Zero(1), H);
-  gravityVector(robot, Eigen::VectorXd::Zero(1), g);
-  EXPECT_NEAR(H(0, 0), 0.6, kRounding);
-  EXPECT_NEAR(g[0], -9.81 * 0.2, kRounding);  // z falls by x when turning about y
 }
 
 TEST(ModelFile, PrismaticJointMovesAlongItsAxisInBothConventions) {
@@ -355,18 +302,6 @@ TEST(ModelFile, GravityFirstMomentsReplaceThoseOfTheLinksInGravityOnly) {
   inertiaMatrix(with_own, q, H);
   inertiaMatrix(without, q, H_without);
   EXPECT_EQ(H, H_without);
-}
-
-TEST(ModelFile, NumbersDoNotDependOnTheLocale) {
-  struct DecimalComma : std::numpunct<char> {
-    char do_decimal_point() const override { return ','; }
-  };
-  const Eigen::VectorXd plain = someTorques(model(documentedFile()));
-  const std::locale before =
-      std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
-  const std::string error = fileError(documentedFile());
-  std::locale::global(before);
-  EXPECT_EQ(error, "no error");
 }
 
 }  // namespace chain_dynamics::model_file_test

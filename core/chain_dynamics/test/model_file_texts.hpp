@@ -18,14 +18,7 @@
 
 namespace chain_dynamics {
 
-// Two ways of rounding through the same few hundred operations on figures below 100.
-constexpr double kRounding = 1e-12;
-
 inline const std::string kRobots = CHAIN_DYNAMICS_ROBOTS_DIR;
-
-inline double difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff();
-}
 
 inline std::string replaced(std::string text, const std::string& old_part,
                             const std::string& new_part) {

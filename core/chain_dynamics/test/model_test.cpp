@@ -22,13 +22,7 @@ namespace chain_dynamics::model_test {
 
 using ::testing::HasSubstr;
 
-// Two ways of adding the same few dozen terms of figures below 100.
-constexpr double kRounding = 1e-12;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-double difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff();
-}
 
 Model robotModel(const std::string& name) {
   return modelFromFile(std::string(CHAIN_DYNAMICS_ROBOTS_DIR) + "/models/" + name + ".yaml");
@@ -56,24 +50,6 @@ struct Values {
 
 const char* const kModels[] = {"ur10_identified", "franka_inria_identified",
                                "franka_gaz2019_feasible"};
-
-TEST(Model, ChainAsItIsHasTheChainsDynamicsAndNoFriction) {
-  const Chain chain = test::doublePendulum(1, 0.5, 2, 0.4, 9.81);
-  const Model model(chain);
-  EXPECT_EQ(model.name, "double_pendulum");
-  const Eigen::Vector2d q(0.3, 0.7), qd(1, -2), qdd(3, 4);
-  Values values(2);
-  values.compute(model, q, qd, qdd);
-  Eigen::MatrixXd H(2, 2);
-  Eigen::VectorXd c(2), g(2), tau(2);
-  dynamicComponents(chain, q, qd, H, c, g);
-  torques(chain, q, qd, qdd, tau);
-  EXPECT_LT(difference(values.H, H), kRounding);
-  EXPECT_LT(difference(values.c, c), kRounding);
-  EXPECT_LT(difference(values.g, g), kRounding);
-  EXPECT_LT(difference(values.tau, tau), kRounding);
-  EXPECT_EQ(values.f, Eigen::Vector2d::Zero());
-}
 
 TEST(Model, TorquesAreTheSumOfTheComponents) {
   for (const char* name : kModels) {

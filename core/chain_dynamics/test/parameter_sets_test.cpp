@@ -124,14 +124,6 @@ TEST(ParameterSets, InSingleFunctionsGiveWhatDynamicComponentsGive) {
   });
 }
 
-TEST(ParameterSets, OfDifferentRowsGiveAnInertiaMatrixThatIsNotSymmetric) {
-  const Chain chain = randomChain(4);
-  const Rows rows = randomIdentifiedRows(chain);
-  const Links none;
-  const Quantities all = quantitiesOf(chain, ParameterSets{rows, none}, randomState(chain, 0));
-  EXPECT_GT((all.H - all.H.transpose()).norm(), 0.1);
-}
-
 TEST(ParameterSets, TorquesMayOverwriteAnInput) {
   const Chain chain = randomChain(4);
   State<double> state = randomState(chain, 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Files and errors, for tests.
+/// Files, differences and errors, for tests.
 
 #pragma once
 
@@ -37,6 +37,14 @@ inline std::string textOf(const std::string& path) {
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
+}
+
+// Two ways of rounding through the same few hundred operations on figures below 100.
+constexpr double kRounding = 1e-12;
+
+/// The greatest difference of two entries.
+inline double difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff();
 }
 
 /// The text of the ModelError that a call throws; "no error" if it doesn't.

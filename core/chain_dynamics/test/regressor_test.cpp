@@ -31,38 +31,12 @@ VectorX<double> rotorInertia(const Chain& chain) {
   return rotor;
 }
 
-// A body turning about the horizontal z axis, y up. Torque about z:
-//   Izz qdd + mcx (g cos q) - mcy (g sin q)
-// and nothing else: m and the other moments load the bearing only.
-TEST(Regressor, OfAPendulumByHand) {
-  const Chain chain = pendulum(2, 0.5, 9.81);
-  State<double> state{VectorX<double>(1), VectorX<double>(1), VectorX<double>(1)};
-  state.q << 0.7;
-  state.qd << 2;
-  state.qdd << -3;
-  Eigen::Matrix<double, 1, 10> expected;
-  expected << 0, 9.81 * std::cos(0.7), -9.81 * std::sin(0.7), 0, 0, 0, 0, 0, 0, -3;
-  EXPECT_TRUE(agree(regressorOf(chain, state), expected, 10, kByHand));
-}
-
 TEST(Parameters, StandTenPerLinkInTheOrderOfTheChain) {
   const Chain chain = doublePendulum(1.5, 0.6, 0.8, 0.4, 9.81);
   VectorX<double> expected(20);
   expected << 1.5, 1.5 * 0.6, 0, 0, 0, 0, 0, 1.5 * 0.6 * 0.6, 0, 1.5 * 0.6 * 0.6,  //
       0.8, 0.8 * 0.4, 0, 0, 0, 0, 0, 0.8 * 0.4 * 0.4, 0, 0.8 * 0.4 * 0.4;
   EXPECT_TRUE(agree(parameters(chain), expected, 10, kByHand));
-}
-
-TEST(Regressor, TimesTheParametersIsTheTorque) {
-  forEachState([](const Chain& chain, const State<double>& state) {
-    const MatrixX<double> Y = regressorOf(chain, state);
-    const VectorX<double> p = parameters(chain).cast<double>();
-    const VectorX<double> rotor = rotorInertia(chain).cast<double>();
-    VectorX<double> tau(chain.jointCount());
-    torques(chain, state.q, state.qd, state.qdd, tau);
-    EXPECT_TRUE(agree(Y * p + rotor.cwiseProduct(state.qdd), tau,
-                      largest(Y.cwiseAbs() * p.cwiseAbs()), rounding(chain)));
-  });
 }
 
 // The regressor knows the motion only: other parameters, the same matrix. These have all ten

@@ -107,12 +107,6 @@ TEST(Cross, OfForceIsMinusTheTransposeOfThatOfMotion) {
   }
 }
 
-TEST(Cross, OfAMotionWithItselfIsZero) {
-  Random random(6);
-  const Motion<double> V = randomMotion(random);
-  EXPECT_LE(distance(cross(V, V), Motion<double>::zero()), kSpatialRounding);
-}
-
 // 2 kg at 3 m along y: m c^2 = 18 kg m^2 about x and z, nothing about y.
 TEST(SpatialInertia, OfAPointIsAboutTheOrigin) {
   const LinkParameters I = LinkParameters::fromCenterOfMass(2, {0, 3, 0}, Eigen::Matrix3d::Zero());
@@ -139,25 +133,6 @@ TEST(SpatialInertia, MovedIsThatOfTheMovedBody) {
         1.5, X.R * center + X.p, X.R * about_center * X.R.transpose());
     EXPECT_LE(distance(moved, expected), 10 * kSpatialRounding);
   }
-}
-
-TEST(SpatialInertia, HasTheSameKineticEnergyInEveryFrame) {
-  Random random(8);
-  for (int trial = 0; trial < kTrials; ++trial) {
-    const Transform<double> X_AB = randomTransform(random);
-    const Motion<double> V_B = randomMotion(random);
-    const LinkParameters I_B = test::randomIdentifiedLink(random);
-    const Motion<double> V_A = X_AB * V_B;
-    EXPECT_NEAR(dot(V_A, (X_AB * I_B) * V_A), dot(V_B, I_B * V_B), 10 * kSpatialRounding);
-  }
-}
-
-TEST(SpatialInertia, OfTwoBodiesIsTheSum) {
-  Random random(9);
-  const LinkParameters one = test::randomIdentifiedLink(random);
-  const LinkParameters other = test::randomIdentifiedLink(random);
-  const Motion<double> A = randomMotion(random);
-  EXPECT_LE(distance((one + other) * A, one * A + other * A), kSpatialRounding);
 }
 
 TEST(SpatialInertia, IsTenNumbersInTheOrderOfFiles) {

@@ -118,15 +118,6 @@ TEST(TipKinematics, JacobianIsTheDerivativeOfThePose) {
   });
 }
 
-TEST(TipKinematics, TheRotationIsOne) {
-  forEachState([](const Chain& without, const State<double>& state) {
-    const Chain chain = withTip(without);
-    const Matrix3<double> R = tipPose(chain, state.q).R;
-    EXPECT_TRUE(agree((R * R.transpose()).eval(), Matrix3<double>::Identity(), 1, rounding(chain)));
-    EXPECT_GT(R.determinant(), 0);
-  });
-}
-
 // A robot that stands far away has the same Jacobian to the last bit.
 TEST(TipKinematics, TheJacobianDoesNotDependOnTheFirstJointsPlace) {
   const Chain chain = withTip(randomChain(7));

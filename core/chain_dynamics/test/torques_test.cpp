@@ -8,7 +8,6 @@
 
 #include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/dynamic_components.hpp"
-#include "chain_dynamics/energy.hpp"
 #include "example_robots.hpp"
 #include "lagrange.hpp"
 #include "random_chains.hpp"
@@ -123,33 +122,6 @@ TEST(Torques, AreTheSumOfTheTermsOfTheEquationOfMotion) {
     dynamicComponents(chain, state.q, state.qd, H, c, g);
     EXPECT_TRUE(agree(torquesOf(chain, state), H * state.qdd + c + g, termsOf(chain, state),
                       rounding(chain)));
-  });
-}
-
-TEST(Torques, AreLinearInTheAccelerations) {
-  forEachState([](const Chain& chain, const State<double>& state) {
-    // with a + b = 1: tau(a x + b y) = a tau(x) + b tau(y)
-    const double a(0.75);
-    const double b(0.25);
-    State<double> x = state;
-    State<double> y = state;
-    y.qdd = randomState(chain, 99).qdd;
-    State<double> mixed = state;
-    mixed.qdd = a * x.qdd + b * y.qdd;
-    EXPECT_TRUE(agree(torquesOf(chain, mixed), a * torquesOf(chain, x) + b * torquesOf(chain, y),
-                      termsOf(chain, x) + termsOf(chain, y), rounding(chain)));
-  });
-}
-
-TEST(Torques, HaveThePowerThatChangesItsEnergy) {
-  forEachState([](const Chain& chain, const State<double>& state) {
-    // all quantities as they change in time
-    const auto q = moving<double>(state.q, state.qd);
-    const auto qd = moving<double>(state.qd, state.qdd);
-    const double rate = (kineticEnergy(chain, q, qd) + potentialEnergy(chain, q)).derivative[0];
-    const double power = torquesOf(chain, state).dot(state.qd);
-    const double scale = termsOf(chain, state) * static_cast<double>(state.qd.cwiseAbs().sum());
-    EXPECT_NEAR(power, rate, rounding(chain) * scale);
   });
 }
 

@@ -7,9 +7,22 @@
 
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 
+#include "chain_dynamics/torques.hpp"
+
 namespace chain_dynamics {
+
+inline Eigen::VectorXd someTorques(const Chain& chain) {
+  const Eigen::Index n = chain.jointCount();
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(n, 0.3, 1.1);
+  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(n, -1.2, 2.0);
+  const Eigen::VectorXd qdd = Eigen::VectorXd::LinSpaced(n, 3.0, -2.0);
+  Eigen::VectorXd tau(n);
+  torques(chain, q, qd, qdd, tau);
+  return tau;
+}
 
 inline const char* const kLimit = R"(<limit lower="-1" upper="2" effort="3" velocity="4"/>)";
 
