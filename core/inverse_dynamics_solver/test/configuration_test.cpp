@@ -12,21 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace inverse_dynamics_solver::configuration_test {
 
-template <class E, class Call>
-std::string errorOf(Call call) {
-  try {
-    call();
-  } catch (const E& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no exception";
-  return "";
-}
-
+using conformance::errorOf;
 using Values = std::map<std::string, ParameterValue>;
 
 /// A shoulder and, beside the arm, a gripper finger that slides out by its joint position.

@@ -7,33 +7,23 @@
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
-#include <locale>
 #include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "node_parameters_stand_in.hpp"
 
 namespace inverse_dynamics_solver::parameters_test {
 
+using conformance::errorOf;
 using stand_in::NodeParameters;
 using stand_in::NodeParametersInterface;
 
 /// The implicit conversion that initialize() relies on.
 Parameters implicitly(const Parameters& parameters) { return parameters; }
-
-template <class E, class Call>
-std::string errorOf(Call call) {
-  try {
-    call();
-  } catch (const E& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no exception";
-  return "";
-}
 
 TEST(Parameters, AreEmptyFromNothing) {
   EXPECT_FALSE(implicitly({}).find("root"));
@@ -216,16 +206,6 @@ TEST(ParametersFromYaml, RosParameterFilesAreUnderstood) {
 )");
   EXPECT_EQ(parameters.get<std::string>("robot_description"), "<robot/>");
   EXPECT_EQ(parameters.get<std::string>("ids.tip"), "tool0");
-}
-
-TEST(ParametersFromYaml, NumbersDoNotDependOnTheLocale) {
-  struct Comma : std::numpunct<char> {
-    char do_decimal_point() const override { return ','; }
-  };
-  const std::locale before = std::locale::global(std::locale(std::locale(), new Comma));
-  const auto mass = Parameters::fromYaml("mass: 1.5").find("mass");
-  std::locale::global(before);
-  EXPECT_EQ(mass, ParameterValue(1.5));
 }
 
 TEST(ParametersFromYaml, MistakesNameTheirLine) {

@@ -66,13 +66,6 @@ TEST(SolverLoader, TellsWhatASolverIs) {
   EXPECT_THROW(SolverLoader().description("none"), PluginNotFoundException);
 }
 
-TEST(SolverLoader, LoadsASolverThatComputes) {
-  const auto solver = SolverLoader().load(kPendulum);
-  EXPECT_FALSE(solver->isInitialized());
-  solver->initialize(kPendulumParameters);
-  EXPECT_DOUBLE_EQ(solver->getGravityVector(kHorizontal)[0], kTorque);
-}
-
 TEST(SolverLoader, SolverOutlivesItsLoader) {
   auto loader = std::make_unique<SolverLoader>();
   auto first = loader->load(kPendulum), second = loader->load(kPendulum);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
+#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace inverse_dynamics_solver::workspace_pool_test {
@@ -68,28 +69,22 @@ TEST(WorkspacePool, NoTwoThreadsHaveTheSameWorkspace) {
   EXPECT_EQ(shared, 0);
 }
 
-std::string errorOf(const ParameterValue& threads) {
-  const Parameters parameters({{"ids.max_threads", threads}});
-  try {
-    readMaxThreads(readConfiguration(parameters, "ids", ""));
-  } catch (const InvalidParameterValueException& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no exception";
-  return "";
-}
-
 TEST(ReadMaxThreads, GivesWhatIsAskedForElseEnough) {
   EXPECT_EQ(readMaxThreads(readConfiguration(Parameters({{"max_threads", 3}}), "", "")), 3U);
   EXPECT_GE(readMaxThreads(readConfiguration({}, "", "")), 16U);
 }
 
 TEST(ReadMaxThreads, MistakesAreNamed) {
-  EXPECT_EQ(errorOf(0),
+  const auto error = [](const ParameterValue& threads) {
+    const Parameters parameters({{"ids.max_threads", threads}});
+    return conformance::errorOf<InvalidParameterValueException>(
+        [&] { readMaxThreads(readConfiguration(parameters, "ids", "")); });
+  };
+  EXPECT_EQ(error(0),
             "parameter 'ids.max_threads': wrong value: expected 1 to 4096, got 0; give the number "
             "of threads that compute at the same time");
-  EXPECT_NE(errorOf(5000).find("got 5000"), std::string::npos);
-  EXPECT_EQ(errorOf("many"),
+  EXPECT_NE(error(5000).find("got 5000"), std::string::npos);
+  EXPECT_EQ(error("many"),
             "parameter 'ids.max_threads': wrong type: expected integer, got string; correct it "
             "where it is set");
 }
