@@ -9,7 +9,6 @@
 #include <chain_dynamics/gravity_vector.hpp>
 #include <chain_dynamics/inertia_matrix.hpp>
 #include <chain_dynamics/torques.hpp>
-#include <cmath>
 #include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/parameters.hpp>
 #include <random>
@@ -31,41 +30,6 @@ std::string obliqueArm() {
 /// [N m, N, kg m^2] KDL and the engine do the same operations in another order, on terms of up to
 /// 1e3; 1e-16 each, some hundred of them.
 constexpr double kRounding = 1e-11;
-
-/// Worked by hand: two rods of 1 m in the x-z plane, joints about y, 2 kg and 3 kg at their ends;
-/// at q = 0 they point along +x.
-TEST(InverseDynamicsSolverKDL, PlanarArmGivesTheValuesWorkedByHand) {
-  const std::string link = R"("><inertial><origin xyz="1 0 0"/><mass value=")";
-  const std::string inertia =
-      R"("/><inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial></link>)";
-  const std::string urdf = R"(<robot name="planar"><link name="base"/>)"
-                           R"(<link name="one)" +
-                           link + "2" + inertia + R"(<link name="two)" + link + "3" + inertia + R"(
-    <joint name="a" type="continuous"><parent link="base"/><child link="one"/>
-      <axis xyz="0 1 0"/></joint>
-    <joint name="b" type="continuous"><parent link="one"/><child link="two"/>
-      <origin xyz="1 0 0"/><axis xyz="0 1 0"/></joint></robot>)";
-  InverseDynamicsSolverKDL solver;
-  solver.initialize({{"gravity", std::vector<double>{0.0, 0.0, -10.0}}}, "", urdf);
-  ASSERT_EQ(solver.jointNames(), (std::vector<std::string>{"a", "b"}));
-
-  // Stretched along +x, at rest: gravity pulls down, and a positive turn about y lowers the arm, so
-  // the motors must turn it back: -(2 * 1 + 3 * 2) 10 and -3 * 1 * 10.
-  EXPECT_TRUE(solver.getGravityVector(Eigen::Vector2d(0, 0)).isApprox(Eigen::Vector2d(-80, -30)));
-
-  // H = [2 + 3 * 4, 3 * 2; 3 * 2, 3] stretched; with the elbow at a right angle [2 + 3 * 2, 3; 3,
-  // 3].
-  EXPECT_TRUE(solver.getInertiaMatrix(Eigen::Vector2d(0, 0))
-                  .isApprox((Eigen::Matrix2d() << 14, 6, 6, 3).finished()));
-  const Eigen::Vector2d bent(0.4, M_PI_2);
-  EXPECT_TRUE(solver.getInertiaMatrix(bent).isApprox((Eigen::Matrix2d() << 8, 3, 3, 3).finished()));
-
-  // C qd = 3 sin(q2) (-(2 qd1 qd2 + qd2^2), qd1^2) with qd = (1, 2): -3 (4 + 4), 3.
-  EXPECT_TRUE(solver.getCoriolisVector(bent, Eigen::Vector2d(1, 2))
-                  .isApprox(Eigen::Vector2d(-24, 3), 1e-14));
-  EXPECT_EQ(solver.getFrictionVector(Eigen::Vector2d(1, 2)), Eigen::Vector2d::Zero());
-  EXPECT_TRUE(solver.inertiaIsPhysical());
-}
 
 /// The engine is other code, and no part of KDL.
 TEST(InverseDynamicsSolverKDL, AgreesWithTheEngineWhateverIsTakenOfTheRobot) {

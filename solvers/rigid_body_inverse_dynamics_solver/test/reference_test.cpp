@@ -6,11 +6,13 @@
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+#include "inverse_dynamics_solver/parameters.hpp"
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
 namespace rigid_body_inverse_dynamics_solver::reference_test {
 
 using inverse_dynamics_solver::InverseDynamicsSolver;
+using inverse_dynamics_solver::Parameters;
 using inverse_dynamics_solver::conformance::expectEntry;
 using inverse_dynamics_solver::conformance::expectReferenceValues;
 using inverse_dynamics_solver::conformance::numbersOf;
@@ -22,18 +24,17 @@ using inverse_dynamics_solver::conformance::textOf;
 // 1e-12 of terms up to 100 N m.
 constexpr double kTolerance = 1e-10;
 
-TEST(Reference, Ur10DescriptionGivesPinocchiosValues) {
-  InverseDynamicsSolverRigidBody solver;
-  solver.initialize({{"root", std::string("base_link")}, {"tip", std::string("tool0")}}, "",
-                    textOf(robotsFile("urdf/ur10.urdf")));
-  expectReferenceValues(solver, "ur10_urdf.json", kTolerance);
-}
-
-TEST(Reference, PandaDescriptionGivesPinocchiosValues) {
-  InverseDynamicsSolverRigidBody solver;
-  solver.initialize({{"root", std::string("fer_link0")}, {"tip", std::string("fer_link8")}}, "",
-                    textOf(robotsFile("urdf/panda.urdf")));
-  expectReferenceValues(solver, "panda_urdf.json", kTolerance);
+TEST(Reference, DescriptionsGivePinocchiosValuesWhetherRootAndTipAreNamedOrNot) {
+  for (const bool named : {false, true}) {
+    InverseDynamicsSolverRigidBody ur10, panda;
+    const auto ends = [named](const char* root, const char* tip) -> Parameters {
+      return named ? Parameters({{"root", root}, {"tip", tip}}) : Parameters();
+    };
+    ur10.initialize(ends("base_link", "tool0"), "", textOf(robotsFile("urdf/ur10.urdf")));
+    panda.initialize(ends("fer_link0", "fer_link8"), "", textOf(robotsFile("urdf/panda.urdf")));
+    expectReferenceValues(ur10, "ur10_urdf.json", kTolerance);
+    expectReferenceValues(panda, "panda_urdf.json", kTolerance);
+  }
 }
 
 // Whole turns change nothing but the angle's last digits: 1600 turns are 1e4 rad, which a double
@@ -71,14 +72,6 @@ TEST(Reference, ValuesHoldAtLargeAngles) {
     expectReferenceValuesAfterTurns(ur10, "ur10_urdf.json", turns);
     expectReferenceValuesAfterTurns(panda, "panda_urdf.json", turns);
   }
-}
-
-TEST(Reference, RootAndTipNeedNotBeNamed) {
-  InverseDynamicsSolverRigidBody ur10, panda;
-  ur10.initialize({}, "", textOf(robotsFile("urdf/ur10.urdf")));
-  panda.initialize({}, "", textOf(robotsFile("urdf/panda.urdf")));
-  expectReferenceValues(ur10, "ur10_urdf.json", kTolerance);
-  expectReferenceValues(panda, "panda_urdf.json", kTolerance);
 }
 
 TEST(Reference, ModelFilesOfIdentifiedRobotsGiveTheValuesOfTheirSolvers) {

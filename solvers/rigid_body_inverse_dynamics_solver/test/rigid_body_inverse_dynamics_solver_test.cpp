@@ -16,7 +16,6 @@
 #include "inverse_dynamics_solver/external_wrench.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
 #include "inverse_dynamics_solver/payload.hpp"
-#include "inverse_dynamics_solver/solver_loader.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
 namespace rigid_body_inverse_dynamics_solver::rigid_body_inverse_dynamics_solver_test {
@@ -76,15 +75,6 @@ class PrefixPath {
 
 Eigen::VectorXd ramp(Eigen::Index n, double first, double step) {
   return Eigen::VectorXd::LinSpaced(n, first, first + step * static_cast<double>(n - 1));
-}
-
-TEST(RigidBody, IsLoadedByName) {
-  const inverse_dynamics_solver::SolverLoader loader;
-  const std::string name = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody";
-  const auto solver = loader.load(name);
-  solver->initialize({}, "", textOf(robotsFile("urdf/panda.urdf")));
-  EXPECT_EQ(solver->jointCount(), 7);
-  EXPECT_NE(loader.description(name).find("URDF"), std::string::npos);
 }
 
 TEST(RigidBody, ModelCanBeNamedOrGivenByItsPath) {
@@ -188,21 +178,6 @@ TEST(RigidBody, GravityOfTheModelFileIsReplacedOnlyWhereAnotherIsGiven) {
   EXPECT_EQ(hanging.getGravityVector(q), g);
   weightless.initialize({{"model", kFeasible}, {"gravity", std::vector<double>{0, 0, 0}}});
   EXPECT_EQ(weightless.getGravityVector(q), Eigen::VectorXd::Zero(7));
-}
-
-TEST(RigidBody, FrictionIsTheModelFilesAndCanBeSwitchedOff) {
-  InverseDynamicsSolverRigidBody with, without, described;
-  with.initialize({{"model", kUr10}});
-  without.initialize({{"model", kUr10}, {"friction", false}});
-  described.initialize({}, "", textOf(robotsFile("urdf/panda.urdf")));
-  const Eigen::VectorXd q = ramp(6, -1.0, 0.4), qd = ramp(6, 0.5, -0.2), qdd = ramp(6, 2.0, 0.1);
-  const Eigen::VectorXd f = with.getFrictionVector(qd);
-  EXPECT_GT(f.norm(), 1.0);
-  EXPECT_EQ(without.getFrictionVector(qd), Eigen::VectorXd::Zero(6));
-  EXPECT_TRUE((without.getTorques(q, qd, qdd) + f).isApprox(with.getTorques(q, qd, qdd), 1e-14));
-
-  // A URDF's <dynamics damping friction> isn't used unless it is asked for.
-  EXPECT_EQ(described.getFrictionVector(ramp(7, 0.5, -0.2)), Eigen::VectorXd::Zero(7));
 }
 
 /// A body of 2 kg that slides up and down, so that gravity asks for 2 9.81 N: friction is

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
@@ -25,7 +24,6 @@ namespace ur10_inverse_dynamics_solver::ur10_inverse_dynamics_solver_test {
 
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::MotorCurrents;
-using inverse_dynamics_solver::SizeMismatchException;
 using inverse_dynamics_solver::UninitializedException;
 using inverse_dynamics_solver::conformance::expectEntry;
 using inverse_dynamics_solver::conformance::expectReferenceValues;
@@ -111,16 +109,6 @@ TEST(UR10, OffersMotorCurrentsAsAPlugin) {
   EXPECT_TRUE((K * motors->getCurrents(kQ, kQd, kQdd)).isApprox(tau, 1e-14));
 }
 
-TEST(UR10, CurrentsIntoMemoryOfTheCallerAreThoseByValue) {
-  InverseDynamicsSolverUR10 solver;
-  solver.initialize();
-  Eigen::VectorXd i(6);
-  solver.getCurrents(kQ, kQd, kQdd, i);
-  EXPECT_EQ(i, solver.getCurrents(kQ, kQd, kQdd));
-  Eigen::VectorXd five(5);
-  EXPECT_THROW(solver.getCurrents(kQ, kQd, kQdd, five), SizeMismatchException);
-}
-
 TEST(UR10, JointsAreThoseOfTheRobot) {
   InverseDynamicsSolverUR10 solver;
   solver.initialize();
@@ -139,37 +127,6 @@ TEST(UR10, InertiaIsNotPhysicalAndTheWarningSaysSo) {
   EXPECT_LT(H(4, 4), 0);
   ASSERT_EQ(solver.warnings().size(), 1U);
   EXPECT_NE(solver.warnings().front().find("unfit for forward dynamics"), std::string::npos);
-}
-
-TEST(UR10, FrictionAtRestIsThatOfTheSource) {
-  InverseDynamicsSolverUR10 solver;
-  solver.initialize();
-  const Vector6d f = solver.getFrictionVector(Vector6d::Zero());
-  EXPECT_TRUE(f.isApprox(vector6(-0.8, -4.5, -0.4, -1.6, -2.2, -2.9), 0.02)) << f.transpose();
-}
-
-TEST(UR10, FrictionCanBeSwitchedOffForTorquesAndCurrents) {
-  InverseDynamicsSolverUR10 with, without;
-  with.initialize();
-  without.initialize({{"ids.friction", false}}, "ids");
-  EXPECT_EQ(without.getFrictionVector(kQd), Vector6d::Zero());
-  const Vector6d difference = with.getCurrents(kQ, kQd, kQdd) - without.getCurrents(kQ, kQd, kQdd);
-  EXPECT_TRUE(
-      (with.getDriveGainsMatrix() * difference).isApprox(with.getFrictionVector(kQd), 1e-12));
-}
-
-TEST(UR10, GravityCanBeTurned) {
-  InverseDynamicsSolverUR10 standing, hanging, tilted;
-  standing.initialize();
-  hanging.initialize({{"gravity", std::vector<double>{0, 0, 9.81}}});
-  tilted.initialize({{"gravity", std::vector<double>{9.81, 0, 0}}});
-  const Vector6d g = standing.getGravityVector(kQ);
-  ASSERT_GT(g.norm(), 1.0);
-  EXPECT_TRUE(hanging.getGravityVector(kQ).isApprox(-g, 1e-14));
-
-  // Mounted on a wall, the first joint carries weight.
-  EXPECT_NEAR(g[0], 0, 1e-12);
-  EXPECT_GT(std::abs(tilted.getGravityVector(kQ)[0]), 1.0);
 }
 
 TEST(UR10, IgnoresARobotDescription) {
