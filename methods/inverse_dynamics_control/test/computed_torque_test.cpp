@@ -75,13 +75,6 @@ TEST(ComputedTorque, WhatTheRobotCompensatesIsLeftOut) {
                inverse_dynamics_solver::InvalidParameterValueException);
 }
 
-TEST(ComputedTorque, FrictionIsThatOfTheReferenceVelocity) {
-  LawOptions options = unlimited(1);
-  options.friction.source = FrictionSource::kReferenceVelocity;
-  options.friction.blend = 0.1;
-  EXPECT_NEAR(torqueOf(options) - torqueOf(unlimited(1)), Pendulum::friction(0.4), kRounding);
-}
-
 TEST(ComputedTorque, GainsOfAFrequencyAndADampingRatio) {
   const Gains gains = Gains::of(vec({20.0, 30.0}), vec({1.0, 0.5}));
   EXPECT_EQ(gains.Kp, vec({400.0, 900.0}));

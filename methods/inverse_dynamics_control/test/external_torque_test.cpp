@@ -51,18 +51,6 @@ class Names {
 };
 TYPED_TEST_SUITE(ExternalTorque, Estimators, Names);
 
-TYPED_TEST(ExternalTorque, FollowsAStepWithItsTimeConstantAtAnyPeriod) {
-  for (const double period : {1e-3, 8e-3}) {
-    const auto observer = this->onPendulum(options(1, VelocitySource::kMeasured));
-    const JointState rest = stateOf(vec({0.7}), vec({0.0}));
-    EXPECT_EQ(observer->update(rest, vec({holding(0.7)}), period), EstimateStatus::kStarting);
-    for (int k = 1; k < 40; ++k) {
-      ASSERT_EQ(observer->update(rest, vec({holding(0.7) + 5.0}), period), EstimateStatus::kOk);
-      EXPECT_NEAR(observer->torques()[0], 5.0 * -std::expm1(-kGain * k * period), kRounding);
-    }
-  }
-}
-
 /// When an estimate has risen to 1 - 1/e of an external torque of 5 N m that begins at zero [s].
 ///
 /// @param yields  whether the pendulum gives way to it (its effort stays), or is held (its effort
@@ -138,16 +126,16 @@ TYPED_TEST(ExternalTorque, BeginsAgainAfterEffortsThatOverflow) {
   EXPECT_TRUE(observer->torques().allFinite());
 }
 
-TYPED_TEST(ExternalTorque, PeriodsMayVary) {
+TYPED_TEST(ExternalTorque, FollowsAStepWithItsTimeConstantAtPeriodsThatVary) {
   const auto observer = this->onPendulum(options(1, VelocitySource::kMeasured));
   const JointState rest = stateOf(vec({0.7}), vec({0.0}));
   std::mt19937 random(1);
   double time = 0.0;
-  observer->update(rest, vec({holding(0.7)}), kPeriod);
+  EXPECT_EQ(observer->update(rest, vec({holding(0.7)}), kPeriod), EstimateStatus::kStarting);
   for (int k = 0; k < 100; ++k) {
-    const double period = std::uniform_real_distribution<double>(2e-4, 3e-3)(random);
+    const double period = std::uniform_real_distribution<double>(2e-4, 8e-3)(random);
     time += period;
-    observer->update(rest, vec({holding(0.7) + 5.0}), period);
+    ASSERT_EQ(observer->update(rest, vec({holding(0.7) + 5.0}), period), EstimateStatus::kOk);
     EXPECT_NEAR(observer->torques()[0], 5.0 * -std::expm1(-kGain * time), kRounding);
   }
 }

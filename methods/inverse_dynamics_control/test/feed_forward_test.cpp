@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
-#include <ur10_inverse_dynamics_solver/ur10_inverse_dynamics_solver.hpp>
 
 #include "arms.hpp"
 
@@ -39,21 +37,6 @@ TEST(FeedForward, WhatTheRobotCompensatesIsLeftOut) {
   EXPECT_NEAR(torqueOf(ModelState::kReference, options), 8.5 + 9.81 * std::cos(1.2), kRounding);
   options.compensated.gravity = true;
   EXPECT_NEAR(torqueOf(ModelState::kReference, options), 8.5, kRounding);
-}
-
-TEST(FeedForward, GivesTheTorquesOfTheIdentifiedUr10) {
-  auto ur10 = std::make_shared<ur10_inverse_dynamics_solver::InverseDynamicsSolverUR10>();
-  ur10->initialize();
-  LawOptions options = unlimited(6);
-  options.friction.source = FrictionSource::kReferenceVelocity;
-  FeedForward law(ur10, ModelState::kReference, options);
-  const Reference r =
-      referenceOf(Eigen::VectorXd::LinSpaced(6, -1, 1), Eigen::VectorXd::Constant(6, 0.5),
-                  Eigen::VectorXd::LinSpaced(6, 2, -2));
-  Eigen::VectorXd tau(6);
-  EXPECT_EQ(law.update(JointState(6), r, Eigen::VectorXd::Zero(6), kPeriod, tau), Status::kOk);
-  // rounding: torques of up to 100 N m, summed in another order
-  EXPECT_LT((tau - ur10->getTorques(r.q, r.qd, r.qdd)).norm(), 1e-11);
 }
 
 }  // namespace inverse_dynamics_control::feed_forward_test

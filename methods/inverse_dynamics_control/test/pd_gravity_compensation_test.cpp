@@ -94,20 +94,6 @@ TEST(FrictionCompensation, IsThatOfTheLoadAtThePositionOfTheLaw) {
   }
 }
 
-TEST(PdGravityCompensation, APendulumSettlesAtItsReference) {
-  PdGravityCompensation law(Pendulum::make(), {vec({50.0}), vec({10.0})}, unlimited(1));
-  JointState state = stateOf(vec({-0.5}), vec({0.0}));
-  const Reference reference = referenceOf(vec({1.0}), vec({0.0}), vec({0.0}));
-  Eigen::VectorXd tau(1);
-  for (int k = 0; k < 5000; ++k) {
-    ASSERT_EQ(law.update(state, reference, kPeriod, tau), Status::kOk);
-    const double acceleration = (tau[0] - 9.81 * std::cos(state.q[0])) / 0.5;
-    state.qd[0] += acceleration * kPeriod;
-    state.q[0] += state.qd[0] * kPeriod;
-  }
-  EXPECT_NEAR(state.q[0], 1.0, 1e-9);
-}
-
 TEST(PdGravityCompensation, GainsChangeWhileItRuns) {
   const auto solver = ChainSolver::make(twoBars());
   const PdGains other{vec({60.0, 10.0}), vec({1.0, 0.0})};

@@ -192,22 +192,6 @@ TEST(ConsistentFit, BeginsWithAnotherFitWhoseCoefficientsAreBeyondTheirLimits) {
   EXPECT_NEAR(again.cost, first.cost, 1e-6 * first.cost);
 }
 
-TEST(ConsistentFit, OfSumsOfBlocksIsThatOfAllSamples) {
-  const Chain description = threeJointArm(0.6);
-  const Motion one = measured(threeJointArm(), 50, 1), other = measured(threeJointArm(), 70, 2);
-  RegressorGram sum = gramOf(description, one);
-  sum.add(gramOf(description, other));
-  Motion both{Eigen::MatrixXd(3, 120), Eigen::MatrixXd(3, 120), Eigen::MatrixXd(3, 120),
-              Eigen::MatrixXd(3, 120)};
-  both.q << one.q, other.q;
-  both.qd << one.qd, other.qd;
-  both.qdd << one.qdd, other.qdd;
-  both.tau << one.tau, other.tau;
-  const Fit of_sum = consistentFit(sum, priorOf(description));
-  const Fit of_all = consistentFit(gramOf(description, both), priorOf(description));
-  EXPECT_NEAR(of_sum.cost, of_all.cost, 1e-6 * of_all.cost);
-}
-
 TEST(ConsistentFit, StaysBelowTheMost) {
   const Chain description = threeJointArm();
   const Motion motion = measured(description, 300, 5);
