@@ -102,39 +102,6 @@ TEST(Migration, GetDynamicParametersIsThere) {
   EXPECT_EQ(g, solver->getGravityVector(kQ));
 }
 
-TEST(Migration, FrictionIsLeftOutOrTakenFromTheUrdf) {
-  const auto identified = SolverLoader().load(kUr10);
-  identified->initialize({{"friction", false}});
-  EXPECT_TRUE(identified->getFrictionVector(kQd).isZero(0.0));
-
-  std::string urdf = ur10();
-  const std::string none = "damping=\"0\"", some = "damping=\"2\"";
-  for (auto at = urdf.find(none); at != std::string::npos; at = urdf.find(none)) {
-    urdf.replace(at, none.size(), some);
-  }
-  const auto kdl = SolverLoader().load(kKdl);
-  kdl->initialize({{"tip", "tool0"}, {"urdf_friction", true}}, "", urdf);
-  EXPECT_TRUE(kdl->getFrictionVector(kQd).isApprox(2.0 * kQd, kRounding));
-}
-
-TEST(Migration, RootAndTipAreThoseOfTheUrdfWhereNothingIsSaid) {
-  const auto gravity = [](const inverse_dynamics_solver::Parameters& parameters) {
-    const auto kdl = SolverLoader().load(kKdl);
-    const std::string chain =
-        "<robot name='a'><link name='base'/><link name='arm'><inertial><origin xyz='0.5 0 "
-        "0'/><mass "
-        "value='2'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' "
-        "izz='0'/></inertial></link><joint "
-        "name='hinge' type='continuous'><parent link='base'/><child link='arm'/><axis xyz='0 -1 "
-        "0'/></joint></robot>";
-    kdl->initialize(parameters, "", chain);
-    return kdl->getGravityVector(Eigen::VectorXd::Zero(1))[0];
-  };
-  EXPECT_NEAR(gravity({}), 2 * 9.81 * 0.5, kRounding);
-  EXPECT_EQ(gravity({}), gravity({{"root", ""}, {"tip", ""}}));
-  EXPECT_EQ(gravity({}), gravity({{"root", "base"}, {"tip", "arm"}}));
-}
-
 TEST(Migration, BodiesBeyondTheTipCountUnlessTheyAreIgnored) {
   std::string urdf = ur10();
   const std::string load =

@@ -32,6 +32,7 @@ namespace inverse_dynamics_evaluation::recording_test {
 
 namespace fs = std::filesystem;
 using inverse_dynamics_evaluation::RecordingError;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -436,15 +437,12 @@ TEST_P(McapTest, WithAnotherBeginningEndOrSummaryIsRefused) {
   EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("the summary lies outside of the file"));
   put(file("bag"), "x" + whole.substr(1));
   EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("expected an MCAP file"));
-  put(file("bag"), whole.substr(0, whole.size() - 1));
-  EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("the file has no end"));
-}
-
-TEST_P(McapTest, WithoutAnEndNamesTheCommandThatSavesWhatIsThere) {
-  write("bag", evenly(10));
-  const std::string whole = contentOf(file("bag"));
-  put(file("bag"), whole.substr(0, whole.size() - 100));
-  EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("`mcap recover` saves what is there"));
+  for (const std::size_t missing : {1U, 100U}) {
+    put(file("bag"), whole.substr(0, whole.size() - missing));
+    EXPECT_THAT(
+        errorOfReading(file("bag")),
+        AllOf(HasSubstr("the file has no end"), HasSubstr("`mcap recover` saves what is there")));
+  }
 }
 
 TEST_P(McapTest, WithoutSchemasOrChannelsInTheSummaryIsRead) {

@@ -274,12 +274,6 @@ TEST(ExamineSamples, SurvivesAFirstStampOfZero) {
   EXPECT_NEAR(report.period, 0.01, 1e-6);
 }
 
-TEST(ExamineSamples, NamesTheTimeBases) {
-  EXPECT_EQ(name(TimeBase::kStamps), "stamps");
-  EXPECT_EQ(name(TimeBase::kRegular), "regular");
-  EXPECT_EQ(name(TimeBase::kRegularFresh), "regular_fresh");
-}
-
 TEST(ExamineSamples, RefusesWhatItCannotExamine) {
   const Motion motion = sines(100.0, 1.0, {0.5, 1.0});
   Motion bad = motion;
