@@ -41,6 +41,8 @@ TEST(Text, WhatIsUtf8StaysAndOtherBytesAreEscaped) {
   EXPECT_EQ(printable("\xC0\x80 \xED\xA0\x80 \xF5\x80\x80\x80 \xE8\x85"),
             "\\xc0\\x80 \\xed\\xa0\\x80 \\xf5\\x80\\x80\\x80 \\xe8\\x85");
   EXPECT_FALSE(isPrintable("\xC4rmel"));
+  EXPECT_FALSE(isPrintable("\xE0\x80\x80"));      // a zero in three bytes
+  EXPECT_FALSE(isPrintable("\xF4\x90\x80\x80"));  // beyond the last character
   EXPECT_FALSE(isPrintable("a\nb"));
 }
 

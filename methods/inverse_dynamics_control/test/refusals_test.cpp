@@ -168,6 +168,9 @@ TEST(Refusals, WrongSizesAreNotComputedWith) {
             Status::kWrongSize);
   EXPECT_EQ(laws.feed_forward.update(JointState(1), kReference, vec({1, 2}), kPeriod, tau),
             Status::kWrongSize);
+  JointState half(1);
+  half.qd = vec({0.0, 0.0});
+  EXPECT_EQ(laws.computed_torque.update(half, kReference, kPeriod, tau), Status::kWrongSize);
 }
 
 TEST(Refusals, HoldIsTheSafeTorqueOnDemand) {
