@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics import _core
+from inverse_dynamics.arrays import stretches
 from inverse_dynamics.contact import (
     AccelerationResidual,
     ContactDetector,
@@ -415,8 +416,7 @@ def _spans(found: Contacts) -> list[tuple[int, int]]:
         found.thresholds.torques, found.evaluation.joint_names, release_time=_RELEASE
     )
     marked = detector.run(found.time, found.torques, found.valid)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], marked.astype(int), [0]])))
-    first, after = edges[::2], edges[1::2]
+    first, after = stretches(marked)
     ends = found.time[np.minimum(after, len(marked) - 1)] - _RELEASE
     last = np.where(after < len(marked), np.searchsorted(found.time, ends), len(marked) - 1)
     return list(zip(first.tolist(), np.maximum(first, last).tolist(), strict=True))

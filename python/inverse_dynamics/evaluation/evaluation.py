@@ -20,11 +20,11 @@ import numpy as np
 from inverse_dynamics import _core
 from inverse_dynamics._core import Accelerations, Effort, JointError, joint_errors
 from inverse_dynamics.arguments import checked
-from inverse_dynamics.evaluation.accelerations import MASKS, Samples
 from inverse_dynamics.evaluation.bands import read_band
 from inverse_dynamics.evaluation.exports import series_columns
+from inverse_dynamics.evaluation.ranges import outside_of_seen
 from inverse_dynamics.evaluation.run import Run, RunOptions, open_run
-from inverse_dynamics.evaluation.seen_range import outside_of_seen
+from inverse_dynamics.evaluation.samples import MASKS, Samples
 from inverse_dynamics.evaluation.tables import evaluation_table, heading
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.outputs.files import write_text

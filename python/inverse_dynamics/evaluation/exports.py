@@ -24,7 +24,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.evaluation.accelerations import MASKS
+from inverse_dynamics.evaluation.samples import MASKS
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.outputs.files import check_output_file, files_written_whole
 from inverse_dynamics.progress import no_progress

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, cast
 
 from inverse_dynamics import _core
-from inverse_dynamics.evaluation.accelerations import MASKS, Samples
 from inverse_dynamics.evaluation.posture import posture_of
+from inverse_dynamics.evaluation.samples import MASKS, Samples
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.bags import topics_of
 from inverse_dynamics.recordings.joint_log import JointLog, check_clock
@@ -42,7 +42,7 @@ class Overrides(TypedDict, total=False):
 
     parameters: of the solver, one by one. drive_gains: N m/A (prismatic N/A) of efforts that are currents. columns,
     scale, sign, rate, gears: what the names of a table's columns don't say, see log_format.LogFormat.
-    accelerations, cutoff: one of accelerations.METHODS; Hz, of a low-pass.
+    accelerations, cutoff: one of METHODS; Hz, of a low-pass.
     """
 
     plugin: str | None
@@ -68,7 +68,7 @@ class RunOptions(Overrides, total=False):
     """What is said about a recording.
 
     effort_is: what recorded efforts mean, one of EFFORT_CHOICES. clock: which stamps are the time (auto).
-    start, end: s since the first sample; the others aren't read. without_rules: those of accelerations.RULES not to
+    start, end: s since the first sample; the others aren't read. without_rules: those of RULES not to
     be acted upon.
     """
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run
-from inverse_dynamics.evaluation.turns import on_one_turn
+from inverse_dynamics.evaluation.ranges import on_one_turn
 from inverse_dynamics.excitation.excitation import (
     Excitation,
     ExcitationOptions,

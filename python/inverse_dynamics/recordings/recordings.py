@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.arrays import whole_turns
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings import bags, joint_trajectories
@@ -193,9 +194,7 @@ def position_ranges(
             if not len(q):
                 continue
             if name in turning:
-                q = q - 2 * np.pi * np.round(
-                    (q - first.setdefault(name, float(q[0]))) / (2 * np.pi)
-                )
+                q = q - whole_turns(q - first.setdefault(name, float(q[0])))
             least, mean, greatest = found.get(name, (np.inf, 0.0, -np.inf))
             count = counts[name] = counts.get(name, 0) + len(q)
             mean += float((q - mean).sum()) / count
