@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics._core import Recording
 from inverse_dynamics.arrays import whole_turns
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.progress import no_progress
@@ -32,7 +33,6 @@ from inverse_dynamics.recordings.vocabulary import ACCELERATION, EFFORT, POSITIO
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from inverse_dynamics._core import Recording
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Clock
@@ -104,10 +104,7 @@ def read_recording(
         form=form,
         progress=progress,
     )
-    if isinstance(motion, JointLog):
-        return motion
-    assert isinstance(path, (str, Path))
-    return bags.read_joint_log(path, joints, topic=motion.topic, clock=clock, progress=progress)
+    return motion if isinstance(motion, JointLog) else motion.read(joints, clock, progress)
 
 
 def open_motion(
@@ -137,7 +134,7 @@ def open_motion(
             f"{path}: expected a recording of ROS or a table, got {path.suffix}; convert it: "
             f"{command.format(path=shlex.quote(f'{path}'), stem=shlex.quote(path.stem))}"
         )
-    recording = bags.open_recording(path)
+    recording = Recording(path)
     topics = bags.topics_of(recording)
     types = {t.name: t.message_type for t in topics if t.message_count or t.name == topic}
     types = types or {t.name: t.message_type for t in topics}
@@ -146,10 +143,12 @@ def open_motion(
     if types.get(topic) == joint_trajectories.MESSAGE_TYPE:
         trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
         log = joint_trajectories.joint_log_of(trajectories, joints, clock, topic, recording.storage)
-    elif form.scale or form.sign or form.gears:
-        log = bags.read_joint_log(path, joints, topic=topic, clock=clock, progress=progress)
     else:
-        return bags.open_joint_states(path, topic)
+        topic = recording.topic_of_type(bags.MESSAGE_TYPE, topic)
+        states = bags.JointStateTopic(recording, topic)
+        if not (form.scale or form.sign or form.gears):
+            return states
+        log = states.read(joints, clock, progress)
     return _scaled(log, form, f"{path}")
 
 
@@ -223,7 +222,7 @@ def _positions(
         log = read_ros1_log(path, topic=topic)
         yield log.joint_names, factors * log.q
         return
-    recording = bags.open_recording(path)
+    recording = Recording(path)
     there = {t.name: t for t in bags.topics_of(recording) if t.message_type == bags.MESSAGE_TYPE}
     usual = [usual_topic] if usual_topic in there else there
     for name in topic.split("+") if topic else usual:
