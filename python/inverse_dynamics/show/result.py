@@ -83,7 +83,9 @@ class ResultDirectory(Result):
 
     contents: ClassVar[Contents]
     data: ClassVar[str] = ""  # file of the numbers, where it isn't the mark of `contents`
-    arrays: Callable[[], dict[str, Any]]  # samples, for numpy.savez(), where SERIES is among the files
+    arrays: Callable[
+        [], dict[str, Any]
+    ]  # samples, for numpy.savez(), where SERIES is among the files
 
     def write_more(self, directory: Path, storage: Storage | None, progress: Progress) -> None:
         """Write what other results don't have."""
