@@ -12,7 +12,7 @@ from example_recordings import joint_log
 from inverse_dynamics._core import Accelerations, Effort
 from inverse_dynamics.evaluation.evaluation import Evaluation, joint_errors
 from inverse_dynamics.evaluation.many_evaluations import summary_of
-from inverse_dynamics.evaluation.samples import Samples
+from inverse_dynamics.evaluation.samples import SampleReport
 from inverse_dynamics.recordings.time_window import TimeWindow
 from inverse_dynamics.robots.robots import Robot
 
@@ -42,7 +42,7 @@ def make_evaluation(
         joint_names=names,
         units=units,
         accelerations=Accelerations("low-pass", 3.25, True, 2, "regular"),
-        samples=Samples(no, no, ~kept, no, kept, 0.01, 0.0),
+        samples=SampleReport(no, no, ~kept, no, kept, 0.01, 0.0),
         time=log.time,
         qdd=np.sin(log.q),
         measured=(effort or Effort()).torques(log.effort),

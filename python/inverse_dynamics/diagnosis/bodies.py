@@ -17,7 +17,7 @@ from inverse_dynamics.diagnosis.rival import Finding, Rival, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
-    from inverse_dynamics.diagnosis.samples import View
+    from inverse_dynamics.diagnosis.pieces import View
 
 _LENGTH = (8.0, 12.0)  # m/s^2 of gravity, with masses that are wrong by a fifth
 _ALONG, _ACROSS = 0.25, 0.15  # of gravity: masses off by a tenth leave less, across it next to none

@@ -24,8 +24,8 @@ from inverse_dynamics._core import Verdict
 from inverse_dynamics.diagnosis import bodies, efforts, motions, pairs, residuals
 from inverse_dynamics.diagnosis.arm import ArmModel
 from inverse_dynamics.diagnosis.fit import Fitting
+from inverse_dynamics.diagnosis.pieces import View
 from inverse_dynamics.diagnosis.rival import PAGE, Rival, printed
-from inverse_dynamics.diagnosis.samples import View
 from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
     from inverse_dynamics._core import Effort
     from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.diagnosis.pieces import Pieces
     from inverse_dynamics.diagnosis.rival import Finding
-    from inverse_dynamics.diagnosis.samples import Samples
 
 # Errors: mean over the joints, as shares of their measured ranges.
 _MISMATCH = 0.02  # up to which a model fits
@@ -131,7 +131,7 @@ class Comparison:
         return "record a motion in which the joints move one after the other"
 
 
-def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
+def residual_causes(samples: Pieces, computed: Floats) -> tuple[Cause, ...]:
     """Causes outside any model of an arm: saturation, coupled joints, drift. computed: (K M, n) N m."""
     view = View(samples, ArmModel(lambda *_: computed, np.zeros_like))
     contest = _Contest(view)
@@ -145,7 +145,7 @@ def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
 
 
 def meaning_of_efforts(
-    samples: Samples | None, arm: ArmModel, drive_gains: Sequence[float]
+    samples: Pieces | None, arm: ArmModel, drive_gains: Sequence[float]
 ) -> Verdict:
     """Which meaning explains recorded efforts. samples.measured: as recorded. drive_gains: (n,) N m/A, or none.
 
@@ -177,7 +177,7 @@ def meaning_of_efforts(
     return Verdict(name, not reason, summary, reason)
 
 
-def compare(samples: Samples | None, arm: ArmModel) -> Comparison:
+def compare(samples: Pieces | None, arm: ArmModel) -> Comparison:
     """The causes of a mismatch; none where torques match, or samples are uninformative."""
     if samples is None or not samples.comparable:
         return Comparison()

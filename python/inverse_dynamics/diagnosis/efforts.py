@@ -17,7 +17,7 @@ from inverse_dynamics.wording import listed
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.diagnosis.fit import Fitting
-    from inverse_dynamics.diagnosis.samples import View
+    from inverse_dynamics.diagnosis.pieces import View
 
 _SAME = 1.15  # ratio of scales that masses which a maker has rounded may give
 _NAMED = 0.06  # relative distance from a unit's scale that they may give

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.diagnosis.arm import ArmModel
     from inverse_dynamics.diagnosis.fit import Fitting
-    from inverse_dynamics.diagnosis.samples import Samples, View
+    from inverse_dynamics.diagnosis.pieces import Pieces, View
 
 _AGREE = 0.1  # relative, of velocities and slopes of positions: filters of drivers take some
 _SAME = 0.04  # relative, of the factors of joints, and of a factor and that of a unit
@@ -38,7 +38,7 @@ _BEYOND = 1.2  # times the limit
 _CLOCK = 1.12  # least factor of time that efforts distinguish from wrong inertias
 
 
-def contradiction(samples: Samples, arm: ArmModel) -> tuple[Finding, Samples] | None:
+def contradiction(samples: Pieces, arm: ArmModel) -> tuple[Finding, Pieces] | None:
     """A contradiction of velocities, positions and time, and the samples without it."""
     way, integral, moves = _ways(samples)
     power = np.maximum((integral**2).sum(axis=0), 1e-300)
@@ -67,7 +67,7 @@ def contradiction(samples: Samples, arm: ArmModel) -> tuple[Finding, Samples] | 
     return _velocity(samples, wrong, factor, text), _with_slopes(samples, wrong)
 
 
-def _ways(samples: Samples) -> tuple[Floats, Floats, Mask]:
+def _ways(samples: Pieces) -> tuple[Floats, Floats, Mask]:
     """(K, n) by how much positions change in each piece, by how much velocities say; joints that move."""
     step = np.diff(samples.time, axis=1)[..., None]
     whole = (step[..., 0] > 0).all(axis=1) & (step.max(axis=(1, 2)) < 20 * np.median(step))
@@ -81,7 +81,7 @@ def _ways(samples: Samples) -> tuple[Floats, Floats, Mask]:
     return way, integral, np.quantile(np.abs(way), 0.9, axis=0) > 5 * resolution
 
 
-def _in_degrees(samples: Samples, prismatic: Mask, rate: float) -> tuple[Finding, Samples] | None:
+def _in_degrees(samples: Pieces, prismatic: Mask, rate: float) -> tuple[Finding, Pieces] | None:
     """Positions or velocities of all joints that turn, also of those at rest."""
     if min(abs(rate / _DEGREE - 1), abs(rate * _DEGREE - 1)) >= _SAME:
         return None
@@ -100,8 +100,8 @@ def _in_degrees(samples: Samples, prismatic: Mask, rate: float) -> tuple[Finding
 
 
 def _by_clock(
-    samples: Samples, usable: Mask, rate: float, everywhere: bool
-) -> tuple[Finding, Samples] | None:
+    samples: Pieces, usable: Mask, rate: float, everywhere: bool
+) -> tuple[Finding, Pieces] | None:
     """Time that runs at another speed for all joints, which no unit of velocities explains."""
     known = any(abs(1 / rate / factor - 1) < _SAME for factor in _RATES if factor < 100)
     if rate <= 0 or known or not everywhere or usable.sum() < 2:
@@ -127,7 +127,7 @@ def _degrees(reason: str, prismatic: Mask, keys: Sequence[str] = ("q", "qd")) ->
     return Finding("degrees", "Degrees", reason, remedy, value=_DEGREE)
 
 
-def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Finding:
+def _velocity(samples: Pieces, wrong: Mask, factor: float, text: str) -> Finding:
     names = samples.named(wrong)
     whose = "" if wrong.all() else f" of {listed(names)}"
     return Finding(
@@ -141,7 +141,7 @@ def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Findin
     )
 
 
-def _with_slopes(samples: Samples, wrong: Mask) -> Samples:
+def _with_slopes(samples: Pieces, wrong: Mask) -> Pieces:
     """Velocities and accelerations of some joints from a cubic through the positions of each piece."""
     qd, qdd = samples.qd.copy(), samples.qdd.copy()
     for k, time in enumerate(samples.time):

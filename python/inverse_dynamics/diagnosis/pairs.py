@@ -16,7 +16,7 @@ from inverse_dynamics.diagnosis.rival import Finding, Rival, Words
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.diagnosis.fit import Fitting
-    from inverse_dynamics.diagnosis.samples import View
+    from inverse_dynamics.diagnosis.pieces import View
 
 _LIKELIEST = 3  # mistakes of columns, of those that fit best with any load and any gravity
 

@@ -15,7 +15,7 @@ from inverse_dynamics.wording import listed
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.diagnosis.fit import Fitting
-    from inverse_dynamics.diagnosis.samples import View
+    from inverse_dynamics.diagnosis.pieces import View
 
 _FLAT = 2e-3  # of a joint's range: efforts within it of the greatest one are at the limit
 _SHARE = (0.02, 0.9)  # of the samples, at a limit

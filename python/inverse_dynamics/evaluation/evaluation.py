@@ -24,7 +24,7 @@ from inverse_dynamics.evaluation.bands import read_band
 from inverse_dynamics.evaluation.exports import series_columns
 from inverse_dynamics.evaluation.ranges import outside_of_seen
 from inverse_dynamics.evaluation.run import Run, RunOptions, open_run
-from inverse_dynamics.evaluation.samples import MASKS, Samples
+from inverse_dynamics.evaluation.samples import MASKS, SampleReport
 from inverse_dynamics.evaluation.tables import evaluation_table, heading
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.outputs.files import write_text
@@ -102,7 +102,7 @@ class Evaluation(ResultDirectory):
     joint_names: tuple[str, ...]  # those of the solver; the recording's are log.joint_names
     units: tuple[str, ...]
     accelerations: Accelerations
-    samples: Samples
+    samples: SampleReport
     time: Floats  # (N,) s since the first sample
     qdd: Floats  # (N, n) rad/s^2 or m/s^2
     measured: Floats  # (N, n) N m or N: the torques that recorded efforts mean

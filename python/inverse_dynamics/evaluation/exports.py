@@ -11,7 +11,7 @@ position.J velocity.J acceleration.J  of the motion; the acceleration is the est
 effort.J                              as recorded; current.J in its place where it is a current
 measured.J computed.J error.J         torques; error = computed - measured
 band.J                                half the width of the model's 95 % band, where it is known
-repeated ... kept                     what was found in a sample, true or false: see Samples
+repeated ... kept                     what was found in a sample, true or false: see samples.py
 
 Every digit is kept. Parquet knows the unit of each column (key `unit` of its metadata).
 """

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, cast
 
 from inverse_dynamics import _core
 from inverse_dynamics.evaluation.posture import posture_of
-from inverse_dynamics.evaluation.samples import MASKS, Samples
+from inverse_dynamics.evaluation.samples import MASKS, SampleReport
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.bags import topics_of
 from inverse_dynamics.recordings.joint_log import JointLog, check_clock
@@ -87,7 +87,7 @@ class Run:
     arm: Arm  # the robot, with everything that was overridden, and its solver
     log: JointLog  # its efforts are as recorded
     accelerations: Accelerations
-    samples: Samples
+    samples: SampleReport
     time: Floats  # (N,) s since the first sample
     qdd: Floats  # (N, n) rad/s^2 or m/s^2
     notes: tuple[str, ...]  # what was left out or assumed in opening, in words
@@ -189,7 +189,7 @@ def open_run(
         if isinstance(motion, JointLog)
         else motion.log(found.table),
         accelerations=found.accelerations,
-        samples=Samples(
+        samples=SampleReport(
             **{name: arrays[name] for name in MASKS}, period=found.period, jitter=found.jitter
         ),
         time=arrays["time"],

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 _MOST_SPANS = 500
 
-# Names of the masks of Samples, as files have them.
+# Names of the masks of SampleReport, as files have them.
 MASKS = ("repeated", "non_increasing", "start_transient", "isolated", "kept")
 
 
 @dataclass(frozen=True)
-class Samples:
+class SampleReport:
     """Findings about N samples."""
 
     repeated: Mask  # (N,) repeats the sample before
