@@ -171,15 +171,12 @@ def open_run(
         recording=", ".join(filter(None, (f"{bag}", f"{window}"))),
         topic=motion.topic,
         units=list(arm.units),
-        notes=list(motion.notes if isinstance(motion, JointLog) else ()),
+        notes=list(motion.notes),
         scratch=scratch,
     )
-    found = _core.read_motion(
-        arm.solver,
-        motion if isinstance(motion, JointLog) else motion.recording,
-        core,
-        _share_of(motion, progress),
-    )
+    told = _share_of(motion, progress)
+    recorded = motion if isinstance(motion, JointLog) else motion.recording
+    found = _core.read_motion(arm.solver, recorded, core, told)
     arrays = found.table.series
     return Run(
         bag=bag,
@@ -204,7 +201,7 @@ def open_run(
         posture_changes=posture.moves,
         motion=found,
         options=core,
-        progress=_share_of(motion, progress),
+        progress=told,
     )
 
 

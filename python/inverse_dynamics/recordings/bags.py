@@ -105,6 +105,7 @@ class JointStateTopic(NamedTuple):
     recording: Recording
     topic: str
     effort_is: str = ""  # the format states no meaning
+    notes: tuple[str, ...] = ()  # those of reading come with the table
 
     def read(self, joints: Sequence[str], clock: Clock, progress: Progress) -> JointLog:
         """Read them; the arguments are those of read_joint_log(). Raises BagError."""
