@@ -35,6 +35,7 @@ from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import Robot
 from inverse_dynamics.show.result import PAGE, SERIES, ResultDirectory, files_of
+from inverse_dynamics.show.tables import error_columns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -65,7 +66,6 @@ SCHEMA = 4
 RECORDED = ("header_stamps", "receive_stamps", "q", "qd", "effort")
 
 _MOST_JOINTS = 12  # of a text on one screen
-_HEAD = ("joint", "unit", "MAE", "RMSE", "NRMSE", "bias", "R2")
 
 
 @dataclass(frozen=True, repr=False)
@@ -223,7 +223,7 @@ class Evaluation(ResultDirectory):
         return {field.name: getattr(found, field.name) for field in fields(found)} | {"run": None}
 
     def __repr__(self) -> str:
-        rows = [_HEAD, *self._rows()]
+        rows = self._rows()
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = [
             f"Evaluation of {self.bag.name} as {self.robot.name}: {len(self.log)} samples, "
@@ -236,10 +236,10 @@ class Evaluation(ResultDirectory):
 
     def _repr_html_(self) -> str:
         """For notebooks."""
-        head = "".join(f"<th>{name}</th>" for name in _HEAD)
+        names, *rows = self._rows()
+        head = "".join(f"<th>{name}</th>" for name in names)
         body = "".join(
-            f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>"
-            for row in self._rows()
+            f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows
         )
         notes = "".join(f"<li>{escape(note)}</li>" for note in self.explained.notes)
         title = f"{self.bag.name}, {self.robot.name}: mean RMSE {self.mean_rmse:.4g}"
@@ -248,11 +248,13 @@ class Evaluation(ResultDirectory):
         )
 
     def _rows(self) -> list[tuple[str, ...]]:
-        return [
-            (e.joint, e.unit, *numbers[:2], f"{100 * e.nrmse:.3g} %", *numbers[2:])
-            for e in self.errors
-            for numbers in [[f"{x:.4g}" for x in (e.mae, e.rmse, e.bias, e.r2)]]
-        ]
+        """Headings, and the errors of each joint."""
+        columns, texts = error_columns(self.errors), []
+        for name, values in columns.items():
+            form = "{:.3g} %" if name.endswith(" [%]") else "{:.4g}"
+            texts.append([name.removesuffix(" [%]"), *map(form.format, values)])
+        joints = [("joint", "unit"), *((e.joint, e.unit) for e in self.errors)]
+        return [(*joint, *row) for joint, *row in zip(joints, *texts, strict=True)]
 
     def plot(self) -> Figure:
         """Measured and computed torque and the error of each joint, as a figure of matplotlib.
