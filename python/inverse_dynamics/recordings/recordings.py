@@ -154,17 +154,12 @@ def open_motion(
 
 def _scaled(log: JointLog, form: LogFormat, where: str) -> JointLog:
     """The log with what is stated: other units, other signs. Raises BagError."""
-    numbers = {POSITION: log.q, VELOCITY: log.qd, EFFORT: log.effort}
+    kinds = {"q": POSITION, "qd": VELOCITY, "effort": EFFORT}
     if log.qdd is not None:
-        numbers[ACCELERATION] = log.qdd
-    numbers = form.scaled(numbers, {}, len(log.joint_names), where)
-    return replace(
-        log,
-        q=numbers[POSITION],
-        qd=numbers[VELOCITY],
-        effort=numbers[EFFORT],
-        qdd=numbers.get(ACCELERATION),
-    )
+        kinds["qdd"] = ACCELERATION
+    numbers = {kind: getattr(log, field) for field, kind in kinds.items()}
+    scaled: dict[str, Any] = form.scaled(numbers, {}, len(log.joint_names), where)
+    return replace(log, **{field: scaled[kind] for field, kind in kinds.items()})
 
 
 def position_ranges(
