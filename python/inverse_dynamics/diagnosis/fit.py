@@ -18,7 +18,7 @@ import numpy as np
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.diagnosis.pieces import Pieces
-    from inverse_dynamics.diagnosis.rival import Finding, Rival
+    from inverse_dynamics.diagnosis.rival import Mistake, Rival
 
 _FRICTION = 0.25  # greatest step, and greatest viscous torque, as a share of the joint's range
 _SMALL_FRICTION = 0.5  # of a joint that moves little but itself: its range is friction
@@ -84,7 +84,7 @@ class Fitting:
         beyond = np.maximum(of_joints - self.noise**2, 0.0)[..., self.moved]
         return np.asarray(np.sqrt(beyond.mean(axis=-1)))
 
-    def applied(self, rival: Rival, finding: Finding) -> Rival:
+    def applied(self, rival: Rival, finding: Mistake) -> Rival:
         """The rival with the numbers that its remedy states."""
         rival = replace(rival, low=finding.shared, high=finding.shared)
         return (

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.diagnosis import bodies, efforts
-from inverse_dynamics.diagnosis.rival import Finding, Rival, Words
+from inverse_dynamics.diagnosis.rival import Mistake, Rival, Words
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
@@ -51,7 +51,7 @@ def _joined(first: Rival, second: Rival, words: Words) -> Rival:
     return Rival("pair", base, first.qd, words, tuple(parts))
 
 
-def _both(first: Rival, second: Rival, shared: Floats, none: Floats) -> Finding | None:
+def _both(first: Rival, second: Rival, shared: Floats, none: Floats) -> Mistake | None:
     scale, numbers = np.zeros(0), shared
     if first.columns:
         if shared[0] <= 0:
