@@ -130,12 +130,16 @@ class Evaluation(ResultDirectory):
         ]
         return np.array(within) / np.count_nonzero(kept)
 
-    @cached_property
+    @property
     def explained(self) -> Evaluation:
         """The same with the likely causes of its errors: the last of the notes; efforts are doubted with them."""
+        return self if self.run is None or self.causes is not None else self._diagnosed
+
+    @cached_property
+    def _diagnosed(self) -> Evaluation:
         from inverse_dynamics.diagnosis.diagnose import diagnose
 
-        return self if self.run is None or self.causes is not None else diagnose(self)
+        return diagnose(self)
 
     @cached_property
     def arm(self) -> Arm:
