@@ -10,9 +10,10 @@ import numpy as np
 from example_recordings import joint_log
 
 from inverse_dynamics._core import Accelerations, Effort
-from inverse_dynamics.evaluation.accelerations import Samples
 from inverse_dynamics.evaluation.evaluation import Evaluation, joint_errors
-from inverse_dynamics.evaluation.summary import summary_of
+from inverse_dynamics.evaluation.many_evaluations import summary_of
+from inverse_dynamics.evaluation.samples import SampleReport
+from inverse_dynamics.recordings.time_window import TimeWindow
 from inverse_dynamics.robots.robots import Robot
 
 
@@ -41,7 +42,7 @@ def make_evaluation(
         joint_names=names,
         units=units,
         accelerations=Accelerations("low-pass", 3.25, True, 2, "regular"),
-        samples=Samples(no, no, ~kept, no, kept, 0.01, 0.0),
+        samples=SampleReport(no, no, ~kept, no, kept, 0.01, 0.0),
         time=log.time,
         qdd=np.sin(log.q),
         measured=(effort or Effort()).torques(log.effort),
@@ -55,6 +56,6 @@ def make_evaluation(
 
 def summary(name, factor=1.0, **changes):
     """A summary whose errors are a multiple of the others'."""
-    one = summary_of(make_evaluation(samples=60), name)
+    one = summary_of(make_evaluation(samples=60), name, TimeWindow())
     errors = tuple(replace(error, rmse=factor * error.rmse) for error in one.errors)
     return replace(one, errors=errors, **changes)

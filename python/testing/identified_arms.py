@@ -13,7 +13,6 @@ from example_recordings import motion
 from example_robots import JOINTS, URDF
 
 from inverse_dynamics import FastModel, load_robot
-from inverse_dynamics._core import ArmUncertainty
 from inverse_dynamics.evaluation.bands import TorqueBand
 from inverse_dynamics.identification.result import (
     Choice,
@@ -98,7 +97,7 @@ def identification(recording: Path = Path("recording"), **changes: object) -> Id
         "prior_decided": (PriorDecided("forearm_link", "m", 17.1, 17.4, 0.02),),
         "factor": factor,
         "band": TorqueBand(
-            arm=ArmUncertainty(model.friction, factor),
+            factor=factor,
             friction=model.friction,
             noise=np.full(len(JOINTS), NOISE),
             level=np.full(len(JOINTS), 0.5),

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics import _core
+from inverse_dynamics.arrays import stretches
 from inverse_dynamics.contact import (
     AccelerationResidual,
     ContactDetector,
@@ -69,16 +70,6 @@ _FEW = 10.0  # peaks: fewer make a threshold more than twice that of many
 _MOVING = 0.05  # rad/s (prismatic m/s): slower, friction may hold a joint
 _LEAST = 10.0  # independent samples: medians of fewer aren't compared
 _RAISED = 1.5  # times: noted above it
-
-
-def gain_for(cutoff: float | None) -> float:
-    """Default gain [1/s] of estimators, for the cut-off [Hz] of the accelerations of a recording.
-
-    The cut-off is what noise, jitter and quantisation of the recording allow. None: there is none.
-    """
-    if cutoff is None:
-        return _MOST_GAIN
-    return float(np.clip(_GAIN_BY_TRACKING * 2 * np.pi * cutoff, LEAST_GAIN, _MOST_GAIN))
 
 
 @dataclass(frozen=True)
@@ -142,7 +133,7 @@ class Contacts(ResultDirectory):
 class ContactOptions(RunOptions, total=False):
     """What is said about the estimator beside a recording.
 
-    gain: 1/s; none: gain_for() of the recording that thresholds are made of. tracking: rad/s, of velocities from
+    gain: 1/s; none: by the cut-off of the recording that thresholds are made of. tracking: rad/s, of velocities from
     positions; none: recorded velocities. friction_band: N m, one number per joint, or one for all: what the friction
     model may be wrong by beyond what the quiet part shows, whose thresholds are made without it.
     """
@@ -184,38 +175,23 @@ def find_contacts(
             "--quiet (quiet=): expected two times in s since the first sample, the later one second, "
             f"got {quiet[0]:g},{quiet[1]:g}"
         )
-    gain, tracking = options.get("gain"), options.get("tracking")
     evaluation = evaluate(bag, robot, progress=progress, **of_run(options))
-    arm = evaluation.arm
-    solver = arm.solver
-    quiet_from, held_out = evaluation, None
+    solver, alone, held_out = evaluation.arm.solver, evaluation, None
     if quiet_recording is not None:
-        quiet_from = evaluate_run(
-            open_run(quiet_recording, robot, progress=progress, **of_run(options))
-        )
+        alone = evaluate_run(open_run(quiet_recording, robot, progress=progress, **of_run(options)))
     elif quiet is None:
         held_out = _held_out(evaluation.robot)
-    if held_out and gain and gain > held_out.gain:
-        raise InvalidParameterError(
-            f"--gain (gain=): expected at most {held_out.gain:.3g} 1/s, at which `ids identify` has found the "
-            f"errors that thresholds are made of, got {gain:.3g}; give --quiet FROM,TO too"
-        )
-    if gain is None:
-        gain = held_out.gain if held_out else gain_for(quiet_from.accelerations.cutoff)
-    estimates = plain = _estimate(evaluation, solver, gain, tracking)
+    gain, tracking = _gain(options.get("gain"), held_out, alone), options.get("tracking")
+    plain = _estimate(evaluation, solver, gain, tracking)
+    of_quiet = plain if alone is evaluation else _estimate(alone, solver, gain, tracking)
+    without_contact = held_out or _quiet_part(of_quiet, quiet)
+    thresholds, raised_notes = _raised(without_contact, plain, solver, false_alarms)
     # Thresholds contain the friction's error of the quiet part: no band there.
     band = tuple(options.get("friction_band", ()))
     band *= len(solver.joint_names) if len(band) == 1 else 1
-    if band:
-        estimates = _estimate(evaluation, solver, gain, tracking, band)
-    of_quiet = plain
-    if quiet_from is not evaluation:
-        of_quiet = _estimate(quiet_from, solver, gain, tracking)
-    quiet_torques = held_out or _quiet_part(of_quiet, quiet, gain)
-    thresholds, raised_notes = _raised(quiet_torques, plain, solver, false_alarms)
+    estimates = _estimate(evaluation, solver, gain, tracking, band) if band else plain
     wrenches, unseen, wrench_notes = _wrenches(solver, estimates, thresholds)
-    limits = arm.limit("effort", np.inf)
-    blind = _blind(evaluation, thresholds, limits, quiet_torques.where)
+    limits = evaluation.arm.limit("effort", np.inf)
     interruptions = _interruptions(estimates)
     found = Contacts(
         evaluation=evaluation,
@@ -224,7 +200,7 @@ def find_contacts(
         tracking=tracking or _bandwidth(gain),
         friction_band=band,
         measured_velocities=tracking is None,
-        quiet=quiet_torques.where,
+        quiet=without_contact.where,
         time=estimates.time,
         torques=estimates.torques,
         valid=estimates.valid,
@@ -234,7 +210,7 @@ def find_contacts(
         thresholds=thresholds,
         contacts=(),
         interruptions=interruptions,
-        blind=blind,
+        blind=_blind(evaluation, thresholds, limits, without_contact.where),
         quiet_part=quiet if quiet_recording is None else None,
         notes=(
             *evaluation.notes,
@@ -269,9 +245,26 @@ class _Quiet:
     """External torques without contact."""
 
     where: str  # in words
-    gain: float  # 1/s
     period: float  # s
     torques: Floats  # (M, n)
+    most_gain: float = np.inf  # 1/s, of an estimator whose torques are compared with them
+
+
+def _gain(stated: float | None, held_out: _Quiet | None, alone: Evaluation) -> float:
+    """Gain of the estimators [1/s]. alone: the recording that gives thresholds where held-out errors don't.
+
+    By default the cut-off [Hz] of its accelerations decides: what noise, jitter and quantisation allow.
+    """
+    if held_out is None:
+        cutoff = alone.accelerations.cutoff or np.inf
+        usual = np.clip(_GAIN_BY_TRACKING * 2 * np.pi * cutoff, LEAST_GAIN, _MOST_GAIN)
+        return float(usual) if stated is None else stated
+    if stated and stated > held_out.most_gain:
+        raise InvalidParameterError(
+            f"--gain (gain=): expected at most {held_out.most_gain:.3g} 1/s, at which `ids identify` has found the "
+            f"errors that thresholds are made of, got {stated:.3g}; give --quiet FROM,TO too"
+        )
+    return held_out.most_gain if stated is None else stated
 
 
 def _bandwidth(gain: float) -> float:
@@ -319,7 +312,7 @@ def _estimate(
     return _Estimates(evaluation, time, q, qd, torques, valid, longest_period, kind.__name__)
 
 
-def _quiet_part(estimates: _Estimates, quiet: tuple[float, float] | None, gain: float) -> _Quiet:
+def _quiet_part(estimates: _Estimates, quiet: tuple[float, float] | None) -> _Quiet:
     where, chosen, time = f"{estimates.evaluation.bag}", estimates.valid, estimates.time
     if quiet is not None:
         where += f", from {quiet[0]:.9g} s to {quiet[1]:.9g} s"
@@ -331,7 +324,7 @@ def _quiet_part(estimates: _Estimates, quiet: tuple[float, float] | None, gain: 
             )
     period = _period(time)
     where += f": {chosen.sum()} samples, {chosen.sum() * period:.3g} s"
-    return _Quiet(where, gain, period, estimates.torques[chosen])
+    return _Quiet(where, period, estimates.torques[chosen])
 
 
 def _held_out(robot: Robot) -> _Quiet:
@@ -346,7 +339,7 @@ def _held_out(robot: Robot) -> _Quiet:
     held_out = content["held_out"]
     torques = np.array(held_out["torques"], dtype=float)
     where = f"errors of the model on held-out data: {len(torques) * held_out['period']:.3g} s"
-    return _Quiet(where, held_out["gain"], held_out["period"], torques)
+    return _Quiet(where, held_out["period"], torques, held_out["gain"])
 
 
 def _raised(
@@ -415,8 +408,7 @@ def _spans(found: Contacts) -> list[tuple[int, int]]:
         found.thresholds.torques, found.evaluation.joint_names, release_time=_RELEASE
     )
     marked = detector.run(found.time, found.torques, found.valid)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], marked.astype(int), [0]])))
-    first, after = edges[::2], edges[1::2]
+    first, after = stretches(marked)
     ends = found.time[np.minimum(after, len(marked) - 1)] - _RELEASE
     last = np.where(after < len(marked), np.searchsorted(found.time, ends), len(marked) - 1)
     return list(zip(first.tolist(), np.maximum(first, last).tolist(), strict=True))

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.diagnosis.rival import Finding, Rival, printed
+from inverse_dynamics.diagnosis.rival import Mistake, Rival, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
-    from inverse_dynamics.diagnosis.samples import View
+    from inverse_dynamics.diagnosis.pieces import View
 
 _LENGTH = (8.0, 12.0)  # m/s^2 of gravity, with masses that are wrong by a fifth
 _ALONG, _ACROSS = 0.25, 0.15  # of gravity: masses off by a tenth leave less, across it next to none
@@ -70,7 +70,7 @@ def rough(view: View) -> Rival:
     return view.rival("rough", columns=tuple(parts), low=-_ROUGH, high=_ROUGH)
 
 
-def _mount(own: Floats, change: Floats, _: Floats) -> Finding | None:
+def _mount(own: Floats, change: Floats, _: Floats) -> Mistake | None:
     found = own + change
     length, size = float(np.linalg.norm(found)), float(np.linalg.norm(own))
     if not _LENGTH[0] <= length <= _LENGTH[1]:
@@ -81,7 +81,7 @@ def _mount(own: Floats, change: Floats, _: Floats) -> Finding | None:
     if angle < _LEAST_ANGLE:
         return None
     option = ",".join(f"{x:g}" for x in direction)
-    return Finding(
+    return Mistake(
         "gravity",
         "The robot hangs from the ceiling" if angle > 150 else "The robot hangs on a wall",
         f"torques match if gravity acts along {option} m/s² in the frame of the root link, {angle:.0f}° from where "
@@ -92,7 +92,7 @@ def _mount(own: Floats, change: Floats, _: Floats) -> Finding | None:
     )
 
 
-def _subtracted(own: Floats, left: Floats, _: Floats) -> Finding | None:
+def _subtracted(own: Floats, left: Floats, _: Floats) -> Mistake | None:
     """Gravity that is left in efforts without it: the robot subtracts another one, or none."""
     size = max(float(np.linalg.norm(own)), 1e-12)
     along = float(left @ own) / size
@@ -100,7 +100,7 @@ def _subtracted(own: Floats, left: Floats, _: Floats) -> Finding | None:
         return None
     left = np.round(left, 2) + 0.0
     lacking, option = (",".join(f"{x:g}" for x in v) for v in (own - left, left))
-    return Finding(
+    return Mistake(
         "gravity",
         "Gravity is subtracted from the efforts",
         f"torques match if the robot subtracts gravity along {lacking} m/s² in the frame of the root link, where the "
@@ -115,7 +115,7 @@ def _subtracted(own: Floats, left: Floats, _: Floats) -> Finding | None:
     )
 
 
-def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Finding | None:
+def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Mistake | None:
     least, most = (share * arm for share in _MASS)
     if body[0] <= least or (arm and body[0] > most):
         return None
@@ -127,7 +127,7 @@ def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Finding | None:
     load = np.tensordot(rounded, parts, axes=1)
     beside = float(np.abs(load[:, -1]).max()) > _BESIDE * float(np.abs(load).max())
     where = ",".join(f"{x:g}" for x in center)
-    return Finding(
+    return Mistake(
         "tool" if beside else "payload",
         "A tool the description lacks, and the tip" if beside else "A payload",
         f"torques match if the tip carries about {mass:.2g} kg at {where} m",
@@ -137,12 +137,12 @@ def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Finding | None:
     )
 
 
-def _mass(view: View, link: int, change: Floats, _: Floats) -> Finding | None:
+def _mass(view: View, link: int, change: Floats, _: Floats) -> Mistake | None:
     factor = printed(1 + change[0], 2)
     if max(factor, 1 / factor) < _LEAST_FACTOR:
         return None
     name = view.arm.link_names[link] if view.arm.link_names else f"of joint {view.names[link]}"
-    return Finding(
+    return Mistake(
         "mass",
         "A mass of the description is wrong",
         f"torques match if link {name} has {factor:g} times the mass of the description",

@@ -24,8 +24,8 @@ from inverse_dynamics._core import Verdict
 from inverse_dynamics.diagnosis import bodies, efforts, motions, pairs, residuals
 from inverse_dynamics.diagnosis.arm import ArmModel
 from inverse_dynamics.diagnosis.fit import Fitting
+from inverse_dynamics.diagnosis.pieces import View
 from inverse_dynamics.diagnosis.rival import PAGE, Rival, printed
-from inverse_dynamics.diagnosis.samples import View
 from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
     from inverse_dynamics._core import Effort
     from inverse_dynamics.arrays import Floats
-    from inverse_dynamics.diagnosis.rival import Finding
-    from inverse_dynamics.diagnosis.samples import Samples
+    from inverse_dynamics.diagnosis.pieces import Pieces
+    from inverse_dynamics.diagnosis.rival import Mistake
 
 # Errors: mean over the joints, as shares of their measured ranges.
 _MISMATCH = 0.02  # up to which a model fits
@@ -90,7 +90,7 @@ class Cause:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Diagnosis:
     """The causes of a mismatch."""
 
     causes: tuple[Cause, ...] = ()  # all are right, but of rivals only one
@@ -131,7 +131,7 @@ class Comparison:
         return "record a motion in which the joints move one after the other"
 
 
-def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
+def residual_causes(samples: Pieces, computed: Floats) -> tuple[Cause, ...]:
     """Causes outside any model of an arm: saturation, coupled joints, drift. computed: (K M, n) N m."""
     view = View(samples, ArmModel(lambda *_: computed, np.zeros_like))
     contest = _Contest(view)
@@ -145,7 +145,7 @@ def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
 
 
 def meaning_of_efforts(
-    samples: Samples | None, arm: ArmModel, drive_gains: Sequence[float]
+    samples: Pieces | None, arm: ArmModel, drive_gains: Sequence[float]
 ) -> Verdict:
     """Which meaning explains recorded efforts. samples.measured: as recorded. drive_gains: (n,) N m/A, or none.
 
@@ -170,17 +170,17 @@ def meaning_of_efforts(
     alike = [contest.rivals[i].kind for i in others if contest.alike(i, best, _MARGIN)]
     reason = f"{name} and {listed(alike)} can't be told apart" if alike else ""
     if not reason and name != "torque":
-        causes = compare(samples, arm) if name == "torque_without_gravity" else Comparison()
+        causes = compare(samples, arm) if name == "torque_without_gravity" else Diagnosis()
         alone = all(cause.kind == "no_gravity" for cause in causes.causes) and not causes.excluded
         if contest.score(best) > _FITS or not alone:
             reason = causes.text or "no meaning fits"
     return Verdict(name, not reason, summary, reason)
 
 
-def compare(samples: Samples | None, arm: ArmModel) -> Comparison:
+def compare(samples: Pieces | None, arm: ArmModel) -> Diagnosis:
     """The causes of a mismatch; none where torques match, or samples are uninformative."""
     if samples is None or not samples.comparable:
-        return Comparison()
+        return Diagnosis()
     found = motions.contradiction(samples, arm)
     if found is None:
         return _Contest(View(samples, arm)).decide()
@@ -206,9 +206,9 @@ class _Contest:
         self.weights = random.multinomial(pieces, np.full(pieces, 1 / pieces), _RESAMPLED) / pieces
         self.rivals: list[Rival] = []
         self.squares: list[Floats] = []
-        self.remedies: dict[int, tuple[Finding | None, float]] = {}  # by the number of the rival
+        self.remedies: dict[int, tuple[Mistake | None, float]] = {}  # by the number of the rival
 
-    def decide(self) -> Comparison:
+    def decide(self) -> Diagnosis:
         """The outcome."""
         view, fit = self.view, self.fit
         self.add(view.rival("friction", residuals.FRICTION))
@@ -222,10 +222,10 @@ class _Contest:
                 self.add(*residuals.couplings(view))
                 named = self.best(before)
             if causes := self._pair(named, before) or _causes(named, self.as_is):
-                return Comparison(causes)
+                return Diagnosis(causes)
         return self._unnamed(before)
 
-    def _pair(self, named: list[tuple[Finding, float]], before: float) -> tuple[Cause, ...]:
+    def _pair(self, named: list[tuple[Mistake, float]], before: float) -> tuple[Cause, ...]:
         """Two mistakes, if they leave half of what the best single one leaves, and no other pair does."""
         least = min((after for _, after in named), default=before)
         each = bool(named) and named[0][0].own is not None
@@ -241,21 +241,21 @@ class _Contest:
         both = [(one, after) for one in (finding, finding.also) if one]
         return tuple(replace(cause, rival=False) for cause in _causes(both, self.as_is))
 
-    def _unnamed(self, before: float) -> Comparison:
+    def _unnamed(self, before: float) -> Diagnosis:
         """The outcome where no rival wins."""
         own = residuals.of_joints(self.view, self.fit, self.squares[0])
-        findings: tuple[Finding, ...] = () if own is None else (own,)
+        findings: tuple[Mistake, ...] = () if own is None else (own,)
         if not findings and before > _FITS:
             findings = motions.beyond_reach(self.view) or efforts.too_small(self.view)
         if findings:
-            return Comparison(_causes([(one, None) for one in findings], self.as_is))
+            return Diagnosis(_causes([(one, None) for one in findings], self.as_is))
         if before > _FITS:
             rough = [self.score(i) for i, r in enumerate(self.rivals) if r.kind == "rough"]
             if min(rough, default=before) <= _MISMATCH:  # inexact masses explain it
-                return Comparison()
-            return Comparison(excluded=tuple(sorted({r.kind for r in self.rivals} - {"rough"})))
+                return Diagnosis()
+            return Diagnosis(excluded=tuple(sorted({r.kind for r in self.rivals} - {"rough"})))
         lacks = self.fit.friction is None and self.as_is >= max(_GAIN * before, _RUBS)
-        return Comparison(_causes([(residuals.FRICTION, before)] if lacks else [], self.as_is))
+        return Diagnosis(_causes([(residuals.FRICTION, before)] if lacks else [], self.as_is))
 
     @property
     def as_is(self) -> float:
@@ -276,7 +276,7 @@ class _Contest:
                 self.rivals.append(rival)
                 self.squares.append(squares)
 
-    def best(self, before: float) -> list[tuple[Finding, float]]:
+    def best(self, before: float) -> list[tuple[Mistake, float]]:
         """The best finding, or those that can't be told apart, with the errors that their remedies leave.
 
         before: the error without any.
@@ -301,7 +301,7 @@ class _Contest:
             return []
         return self._special(tied, result)
 
-    def remedy(self, i: int) -> tuple[Finding | None, float]:
+    def remedy(self, i: int) -> tuple[Mistake | None, float]:
         """The finding of a rival, and the error that is left with the numbers that it states."""
         if i not in self.remedies:
             rival, after = self.rivals[i], np.inf
@@ -318,24 +318,24 @@ class _Contest:
         return bool(worse.mean() < _SURE)
 
     def _special(
-        self, tied: list[int], result: list[tuple[Finding, float]]
-    ) -> list[tuple[Finding, float]]:
+        self, tied: list[int], result: list[tuple[Mistake, float]]
+    ) -> list[tuple[Mistake, float]]:
         """Without those that include another one; nothing if too many are left."""
         kinds = {self.rivals[i].kind for i in tied}
-        kept: dict[tuple[str, tuple[str, ...]], tuple[Finding, float]] = {}
+        kept: dict[tuple[str, tuple[str, ...]], tuple[Mistake, float]] = {}
         for i, (finding, after) in zip(tied, result, strict=True):
             if not kinds & set(self.rivals[i].includes):
                 kept.setdefault((finding.kind, finding.joints), (finding, after))
         return list(kept.values()) if len(kept) <= _MOST_NAMED else []
 
 
-def _small(after: float, before: float, finding: Finding) -> bool:
+def _small(after: float, before: float, finding: Mistake) -> bool:
     """Whether a remedy leaves little enough of an error; of weights, wrong masses leave more."""
     most = max(_FITS, min(before / _FAR, _MOST_LEFT)) if finding.kind in _AT_REST else _FITS
     return finding.gain * after <= before and after <= most
 
 
-def _causes(named: Sequence[tuple[Finding, float | None]], before: float) -> tuple[Cause, ...]:
+def _causes(named: Sequence[tuple[Mistake, float | None]], before: float) -> tuple[Cause, ...]:
     """One, or rivals. named: with the errors that remedies leave."""
     words = ("kind", "joints", "value", "reason", "remedy", "mistake")
     return tuple(

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.diagnosis.arm import arm_model
 from inverse_dynamics.diagnosis.compare import compare, meaning_of_efforts
-from inverse_dynamics.diagnosis.samples import pieces_of
+from inverse_dynamics.diagnosis.pieces import pieces_of
 from inverse_dynamics.evaluation.evaluation import CAUSE
 
 if TYPE_CHECKING:
     from inverse_dynamics._core import Verdict
     from inverse_dynamics.arrays import Floats
-    from inverse_dynamics.diagnosis.samples import Samples
+    from inverse_dynamics.diagnosis.pieces import Pieces
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.evaluation.run import Run
 
@@ -49,6 +49,6 @@ def verdict_of(run: Run, recorded: Floats) -> Verdict:
     return meaning_of_efforts(_pieces(run, recorded), arm_model(run.arm), gains)
 
 
-def _pieces(run: Run, efforts: Floats) -> Samples | None:
+def _pieces(run: Run, efforts: Floats) -> Pieces | None:
     states = (run.log.q, run.log.qd, run.qdd)
     return pieces_of(run.arm.joint_names, run.time, states, efforts, run.samples.kept)

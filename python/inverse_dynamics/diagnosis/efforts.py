@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.diagnosis.rival import Finding, Rival, printed
+from inverse_dynamics.diagnosis.rival import Mistake, Rival, printed
 from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.diagnosis.fit import Fitting
-    from inverse_dynamics.diagnosis.samples import View
+    from inverse_dynamics.diagnosis.pieces import View
 
 _SAME = 1.15  # ratio of scales that masses which a maker has rounded may give
 _NAMED = 0.06  # relative distance from a unit's scale that they may give
@@ -35,7 +35,7 @@ _UNITS = {  # per N m
     0.001: "kN m",
 }
 _SHARES = {1.0: "shares", 100.0: "per cent", 1000.0: "per mille"}
-_CURRENT = Finding(
+_CURRENT = Mistake(
     "currents",
     "Efforts are motor currents",
     "",
@@ -54,9 +54,9 @@ def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
     yield view.rival("no_gravity", _no_gravity(sign), base=view.computed + sign * view.gravity)
 
 
-def _no_gravity(sign: float) -> Finding:
+def _no_gravity(sign: float) -> Mistake:
     why = "efforts include it" if sign > 0 else "the robot's driver subtracts it from its efforts"
-    return Finding(
+    return Mistake(
         "no_gravity",
         "Gravity is subtracted from the efforts",
         f"the error is the gravity torque: {why}",
@@ -91,7 +91,7 @@ def _turned(view: View, flipped: Mask, *, everything: bool) -> Rival:
         whose, which = f"effort of {names[0]} is", "this effort"
     else:
         whose, which = f"effort of {listed(names)} are", "these efforts"
-    finding = Finding(
+    finding = Mistake(
         "effort_sign" if everything else "effort_direction",
         "A joint is reversed",
         f"torques match if the {whose} reversed",
@@ -112,12 +112,12 @@ def common(view: View) -> Rival:
     return view.rival("effort_scale", _common, base=nothing, columns=columns, low=0.0)
 
 
-def _common(shared: Floats, _: Floats) -> Finding | None:
+def _common(shared: Floats, _: Floats) -> Mistake | None:
     scale = float(shared[0])
     if scale <= 0 or abs(np.log(scale)) < np.log(_SAME):
         return None
     unit, scale = _unit(scale)
-    return Finding(
+    return Mistake(
         "effort_scale",
         "Efforts in another unit",
         f"efforts are {scale:.4g} times the torques in every joint"
@@ -129,7 +129,7 @@ def _common(shared: Floats, _: Floats) -> Finding | None:
     )
 
 
-def too_small(view: View) -> tuple[Finding, ...]:
+def too_small(view: View) -> tuple[Mistake, ...]:
     """Efforts that are far smaller than torques wherever those are large, whatever their shape."""
     measured = np.quantile(np.abs(view.samples.flat(view.samples.measured)), 0.95, axis=0)
     torque = np.quantile(np.abs(view.computed), 0.95, axis=0)
@@ -156,7 +156,7 @@ def _unit(scale: float) -> tuple[str, float]:
     return "", printed(scale)
 
 
-def _each(view: View, _: Floats, own: Floats) -> Finding | None:
+def _each(view: View, _: Floats, own: Floats) -> Mistake | None:
     """Scales of their own: of currents, of limits, of a unit of the joints that turn."""
     scales, shown = own[0], view.informative
     if not (scales[shown] > 0).all():
@@ -192,10 +192,10 @@ def _are_currents(scales: Floats) -> bool:
     return bool(((scales > _CURRENTS[0]) & (scales < _CURRENTS[1])).all())
 
 
-def _scales(view: View, off: Mask, scales: Floats, what: str) -> Finding:
+def _scales(view: View, off: Mask, scales: Floats, what: str) -> Mistake:
     names = view.samples.named(off)
     numbers = listed([f"{s:.4g}" for s in scales[off]])
-    return Finding(
+    return Mistake(
         "effort_scale",
         "Efforts in another unit",
         f"efforts of {listed(names)} are {numbers} times the torques"
@@ -226,7 +226,7 @@ def _exchanged(view: View, i: int, j: int) -> Iterator[Rival]:
         return computed[:, order]
 
     motion = tuple(map(recorded, view.motion))
-    in_order = Finding(
+    in_order = Mistake(
         "order",
         "Joints in another order",
         f"torques match if joints {pair[0]} and {pair[1]} have each other's columns",
@@ -247,7 +247,7 @@ def _exchanged(view: View, i: int, j: int) -> Iterator[Rival]:
 
 def _reversed(view: View, j: int) -> Rival:
     sign = np.where(np.arange(len(view.names)) == j, -1.0, 1.0)
-    finding = Finding(
+    finding = Mistake(
         "direction",
         "A joint is reversed",
         f"joint {view.names[j]}: torques match if its position, velocity and effort are reversed",

@@ -17,8 +17,8 @@ import numpy as np
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
-    from inverse_dynamics.diagnosis.rival import Finding, Rival
-    from inverse_dynamics.diagnosis.samples import Samples
+    from inverse_dynamics.diagnosis.pieces import Pieces
+    from inverse_dynamics.diagnosis.rival import Mistake, Rival
 
 _FRICTION = 0.25  # greatest step, and greatest viscous torque, as a share of the joint's range
 _SMALL_FRICTION = 0.5  # of a joint that moves little but itself: its range is friction
@@ -35,7 +35,7 @@ _MODEL_FRICTION = 1.0  # the model's own friction may be wrong by as much as its
 class Fitting:
     """Least squares of rivals, on the same pieces for all. K pieces of M samples, n joints."""
 
-    def __init__(self, samples: Samples, friction: Floats | None = None) -> None:
+    def __init__(self, samples: Pieces, friction: Floats | None = None) -> None:
         """friction: (N, n) of the model, in what rivals predict; its size is free, too."""
         self.samples = samples
         self.shape = samples.q.shape
@@ -84,7 +84,7 @@ class Fitting:
         beyond = np.maximum(of_joints - self.noise**2, 0.0)[..., self.moved]
         return np.asarray(np.sqrt(beyond.mean(axis=-1)))
 
-    def applied(self, rival: Rival, finding: Finding) -> Rival:
+    def applied(self, rival: Rival, finding: Mistake) -> Rival:
         """The rival with the numbers that its remedy states."""
         rival = replace(rival, low=finding.shared, high=finding.shared)
         return (

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.diagnosis.rival import Finding, Rival, printed
+from inverse_dynamics.diagnosis.rival import Mistake, Rival, printed
 from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.diagnosis.arm import ArmModel
     from inverse_dynamics.diagnosis.fit import Fitting
-    from inverse_dynamics.diagnosis.samples import Samples, View
+    from inverse_dynamics.diagnosis.pieces import Pieces, View
 
 _AGREE = 0.1  # relative, of velocities and slopes of positions: filters of drivers take some
 _SAME = 0.04  # relative, of the factors of joints, and of a factor and that of a unit
@@ -38,7 +38,7 @@ _BEYOND = 1.2  # times the limit
 _CLOCK = 1.12  # least factor of time that efforts distinguish from wrong inertias
 
 
-def contradiction(samples: Samples, arm: ArmModel) -> tuple[Finding, Samples] | None:
+def contradiction(samples: Pieces, arm: ArmModel) -> tuple[Mistake, Pieces] | None:
     """A contradiction of velocities, positions and time, and the samples without it."""
     way, integral, moves = _ways(samples)
     power = np.maximum((integral**2).sum(axis=0), 1e-300)
@@ -67,7 +67,7 @@ def contradiction(samples: Samples, arm: ArmModel) -> tuple[Finding, Samples] | 
     return _velocity(samples, wrong, factor, text), _with_slopes(samples, wrong)
 
 
-def _ways(samples: Samples) -> tuple[Floats, Floats, Mask]:
+def _ways(samples: Pieces) -> tuple[Floats, Floats, Mask]:
     """(K, n) by how much positions change in each piece, by how much velocities say; joints that move."""
     step = np.diff(samples.time, axis=1)[..., None]
     whole = (step[..., 0] > 0).all(axis=1) & (step.max(axis=(1, 2)) < 20 * np.median(step))
@@ -81,7 +81,7 @@ def _ways(samples: Samples) -> tuple[Floats, Floats, Mask]:
     return way, integral, np.quantile(np.abs(way), 0.9, axis=0) > 5 * resolution
 
 
-def _in_degrees(samples: Samples, prismatic: Mask, rate: float) -> tuple[Finding, Samples] | None:
+def _in_degrees(samples: Pieces, prismatic: Mask, rate: float) -> tuple[Mistake, Pieces] | None:
     """Positions or velocities of all joints that turn, also of those at rest."""
     if min(abs(rate / _DEGREE - 1), abs(rate * _DEGREE - 1)) >= _SAME:
         return None
@@ -100,14 +100,14 @@ def _in_degrees(samples: Samples, prismatic: Mask, rate: float) -> tuple[Finding
 
 
 def _by_clock(
-    samples: Samples, usable: Mask, rate: float, everywhere: bool
-) -> tuple[Finding, Samples] | None:
+    samples: Pieces, usable: Mask, rate: float, everywhere: bool
+) -> tuple[Mistake, Pieces] | None:
     """Time that runs at another speed for all joints, which no unit of velocities explains."""
     known = any(abs(1 / rate / factor - 1) < _SAME for factor in _RATES if factor < 100)
     if rate <= 0 or known or not everywhere or usable.sum() < 2:
         return None
     unit = next((u for f, u in _CLOCKS.items() if abs(1 / rate / f - 1) < _SAME), "")
-    finding = Finding(
+    finding = Mistake(
         "clock",
         "A clock at the wrong speed",
         f"positions change {rate:.3g} times as fast as velocities say, in every joint"
@@ -118,19 +118,19 @@ def _by_clock(
     return finding, replace(samples, time=samples.time * rate, qdd=samples.qdd / rate)
 
 
-def _degrees(reason: str, prismatic: Mask, keys: Sequence[str] = ("q", "qd")) -> Finding:
+def _degrees(reason: str, prismatic: Mask, keys: Sequence[str] = ("q", "qd")) -> Mistake:
     """prismatic: (n,) joints, whose numbers are right."""
     unit = ",".join("1" if right else "deg" for right in prismatic) if prismatic.any() else "deg"
     scales = "; if velocities are recorded, also ".join(f"--scale {key}={unit}" for key in keys)
     which = " and ".join({"q": "positions", "qd": "velocities"}[key] for key in keys)
     remedy = f"convert {which} to rad{'/s' * (keys == ('qd',))}: give {scales}"
-    return Finding("degrees", "Degrees", reason, remedy, value=_DEGREE)
+    return Mistake("degrees", "Degrees", reason, remedy, value=_DEGREE)
 
 
-def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Finding:
+def _velocity(samples: Pieces, wrong: Mask, factor: float, text: str) -> Mistake:
     names = samples.named(wrong)
     whose = "" if wrong.all() else f" of {listed(names)}"
-    return Finding(
+    return Mistake(
         "velocity",
         "Velocities that contradict positions",
         f"velocities{whose} contradict the slope of the positions: they are {text}",
@@ -141,7 +141,7 @@ def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Findin
     )
 
 
-def _with_slopes(samples: Samples, wrong: Mask) -> Samples:
+def _with_slopes(samples: Pieces, wrong: Mask) -> Pieces:
     """Velocities and accelerations of some joints from a cubic through the positions of each piece."""
     qd, qdd = samples.qd.copy(), samples.qdd.copy()
     for k, time in enumerate(samples.time):
@@ -184,11 +184,11 @@ def rivals(view: View, _: Fitting) -> Iterator[Rival]:
     yield view.rival("clock", _clock, base=still, columns=columns, low=1e-6, high=1e6)
 
 
-def _clock(square: Floats, _: Floats) -> Finding | None:
+def _clock(square: Floats, _: Floats) -> Mistake | None:
     rate = printed(np.sqrt(square[0]))
     if max(rate, 1 / rate) < _CLOCK:
         return None
-    return Finding(
+    return Mistake(
         "clock",
         "A clock at the wrong speed",
         f"torques match if the motion is {rate:g} times as fast as time and velocities say",
@@ -198,7 +198,7 @@ def _clock(square: Floats, _: Floats) -> Finding | None:
     )
 
 
-def beyond_reach(view: View) -> tuple[Finding, ...]:
+def beyond_reach(view: View) -> tuple[Mistake, ...]:
     """Positions that are beyond limits in most joints, and torques that fit neither as rad nor as degrees."""
     bounded = ~view.prismatic & ~view.arm.of_type("continuous", len(view.names))
     beyond, turning = beyond_limits(view), view.informative & bounded
@@ -207,7 +207,7 @@ def beyond_reach(view: View) -> tuple[Finding, ...]:
     greatest = np.abs(view.motion[0]).max(axis=0)
     names = view.samples.named(beyond)
     reach = f"positions of {listed(names)} go to {listed([f'{g:.3g}' for g in greatest[beyond]])}, far beyond "
-    motors = Finding(
+    motors = Mistake(
         "motor_side",
         "Positions of the motors",
         f"{reach}the joints' limits in rad: they may be those of the motors, before the gears",

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.diagnosis import bodies, efforts
-from inverse_dynamics.diagnosis.rival import Finding, Rival, Words
+from inverse_dynamics.diagnosis.rival import Mistake, Rival, Words
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.diagnosis.fit import Fitting
-    from inverse_dynamics.diagnosis.samples import View
+    from inverse_dynamics.diagnosis.pieces import View
 
 _LIKELIEST = 3  # mistakes of columns, of those that fit best with any load and any gravity
 
@@ -51,7 +51,7 @@ def _joined(first: Rival, second: Rival, words: Words) -> Rival:
     return Rival("pair", base, first.qd, words, tuple(parts))
 
 
-def _both(first: Rival, second: Rival, shared: Floats, none: Floats) -> Finding | None:
+def _both(first: Rival, second: Rival, shared: Floats, none: Floats) -> Mistake | None:
     scale, numbers = np.zeros(0), shared
     if first.columns:
         if shared[0] <= 0:

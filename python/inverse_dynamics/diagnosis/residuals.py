@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.diagnosis.rival import Finding, Rival, printed
+from inverse_dynamics.diagnosis.rival import Mistake, Rival, printed
 from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.diagnosis.fit import Fitting
-    from inverse_dynamics.diagnosis.samples import View
+    from inverse_dynamics.diagnosis.pieces import View
 
 _FLAT = 2e-3  # of a joint's range: efforts within it of the greatest one are at the limit
 _SHARE = (0.02, 0.9)  # of the samples, at a limit
@@ -27,14 +27,14 @@ _CLEARER = 1.5  # least ratio of the errors that wrong masses leave to those tha
 _NOTICED = 0.03  # least error of a joint that is looked at, as a share of its range
 
 
-FRICTION = Finding(
+FRICTION = Mistake(
     "friction",
     "Friction",
     "the error is mostly friction and offset, which the model lacks",
     "take a model with friction, or make one: ids identify RECORDING --robot NAME --out arm.yaml, or "
     "with --urdf FILE instead of --robot NAME",
 )
-_GUIDED = Finding(
+_GUIDED = Mistake(
     "guided",
     "Somebody guides the arm",
     "measured minus computed torques are against the motion in every joint: somebody guides the arm by hand",
@@ -113,13 +113,13 @@ def _limited(view: View, at_limit: Mask) -> Rival:
     )
 
 
-def _saturated(view: View, at_limit: Mask, _: Floats, own: Floats) -> Finding | None:
+def _saturated(view: View, at_limit: Mask, _: Floats, own: Floats) -> Mistake | None:
     found = at_limit.any(axis=0) & (own[0] > _CUT)
     if not found.any():
         return None
     j = int(np.argmax(found))
     limit = view.samples.flat(view.samples.measured)[at_limit[:, j], j]
-    return Finding(
+    return Mistake(
         "saturation",
         "",
         f"joint {view.names[j]}: efforts stay at {limit[np.argmax(np.abs(limit))]:.4g} in "
@@ -142,9 +142,9 @@ def couplings(view: View) -> Iterator[Rival]:
             yield view.rival("coupling", words, columns=(column,))
 
 
-def _coupled(pair: tuple[str, str], ratio: Floats, _: Floats) -> Finding:
+def _coupled(pair: tuple[str, str], ratio: Floats, _: Floats) -> Mistake:
     value = printed(ratio[0], 2)
-    return Finding(
+    return Mistake(
         "coupling",
         "",
         f"joint {pair[0]}: its effort has {value:g} times that of joint {pair[1]} in it: a gear couples the two",
@@ -155,7 +155,7 @@ def _coupled(pair: tuple[str, str], ratio: Floats, _: Floats) -> Finding:
     )
 
 
-def of_joints(view: View, fitting: Fitting, plain: Floats) -> Finding | None:
+def of_joints(view: View, fitting: Fitting, plain: Floats) -> Mistake | None:
     """A limit of efforts, or friction that drifts, in a joint that others outvote.
 
     plain: (K, n) squares with friction alone.
@@ -178,7 +178,7 @@ def _better(fitting: Fitting, plain: Floats, squares: Floats, noticed: float) ->
     return np.asarray((before > noticed) & (after < _LEAVES * before))
 
 
-def _drift(view: View, fitting: Fitting, plain: Floats) -> Finding | None:
+def _drift(view: View, fitting: Fitting, plain: Floats) -> Mistake | None:
     """Friction or offset that changes along the recording.
 
     Gravity of wrong masses may change with time too, where the motion is slow.
@@ -194,7 +194,7 @@ def _drift(view: View, fitting: Fitting, plain: Floats) -> Finding | None:
     names = view.samples.named(_better(fitting, plain, drifting, _NOTICED) & clearer)
     if not names:
         return None
-    return Finding(
+    return Mistake(
         "drift",
         "Friction",
         f"friction or offset of {listed(names)} changes along the recording, as it does while gears warm up",

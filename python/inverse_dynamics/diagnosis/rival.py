@@ -26,7 +26,7 @@ def printed(value: float, digits: int = 3) -> float:
 
 
 @dataclass(frozen=True)
-class Finding:
+class Mistake:
     """A mistake in words, and the numbers of its remedy as printed: all that the remedy changes.
 
     mistake: the nearest heading of PAGE; "": none is near. shared, own: see Rival.
@@ -41,10 +41,10 @@ class Finding:
     shared: Floats = field(default_factory=lambda: np.zeros(0))
     own: Floats | None = None
     gain: float = 2.0  # least ratio of the errors before and after
-    also: Finding | None = None  # a second mistake, of a pair
+    also: Mistake | None = None  # a second mistake, of a pair
 
 
-Words = Callable[["Floats", "Floats"], Finding | None] | Finding | None
+Words = Callable[["Floats", "Floats"], Mistake | None] | Mistake | None
 
 
 @dataclass(frozen=True)
@@ -73,6 +73,6 @@ class Rival:
     motion: tuple[Floats, ...] | None = None
     effort: Callable[[Floats], Floats] = field(default=lambda efforts: efforts)
 
-    def finding(self, shared: Floats, own: Floats) -> Finding | None:
+    def finding(self, shared: Floats, own: Floats) -> Mistake | None:
         """The finding at these numbers."""
         return self.words(shared, own) if callable(self.words) else self.words

@@ -20,14 +20,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics import _core
+from inverse_dynamics._core import ArmUncertainty
 from inverse_dynamics.robots.model_errors import model_errors_file, read_model_errors
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from inverse_dynamics._core import ArmUncertainty, Solver
+    from inverse_dynamics._core import Solver
     from inverse_dynamics.arrays import Floats
 
 NORMAL = 1.96  # half the interval that holds 95 % of a normal distribution, in standard deviations
@@ -50,9 +50,9 @@ _ROWS = 50_000  # samples in memory at a time
 class TorqueBand:
     """The band of a model with n joints. n numbers each: N m (prismatic N), shares, rad/s (m/s)."""
 
-    arm: ArmUncertainty
+    factor: Floats  # (m, K) deviations of the m unknowns: their covariance is factor factor'
     # smooth_coulomb of each joint, by the model file's keys
-    friction: Sequence[Mapping[str, float]]
+    friction: Sequence[dict[str, float]]
     noise: Floats  # standard deviation while the joint moves
     level: Floats  # of offsets from day to day
     share: Floats  # of friction, from day to day
@@ -69,7 +69,7 @@ class TorqueBand:
         extrapolated = 0.5 * fv * np.maximum(np.abs(qd) - self.seen, 0.0)
         variance = (
             self.noise**2
-            + self.arm.variances(solver, (q, qd, qdd))
+            + ArmUncertainty(self.friction, self.factor).variances(solver, (q, qd, qdd))
             + self.level**2
             + (self.share * friction) ** 2
             + extrapolated**2
@@ -105,7 +105,7 @@ def read_band(model: Path | None, solver: Solver) -> tuple[TorqueBand | None, st
     content, why = read_model_errors(model)
     if content is None or "band" not in content:
         return None, why
-    factor = np.array(content["deviations"], dtype=float).T
-    friction, seen = content["friction"], np.abs(solver.seen[1]).max(axis=1)
+    factor, friction = np.array(content["deviations"], dtype=float).T, content["friction"]
+    seen = np.abs(solver.seen[1]).max(axis=1)
     numbers = {key: np.array(values) for key, values in content["band"].items()}
-    return TorqueBand(_core.ArmUncertainty(friction, factor), friction, seen=seen, **numbers), ""
+    return TorqueBand(factor, friction, seen=seen, **numbers), ""

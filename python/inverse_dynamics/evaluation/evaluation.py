@@ -8,8 +8,10 @@ for error in result.errors:
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from html import escape
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,24 +20,34 @@ import numpy as np
 from inverse_dynamics import _core
 from inverse_dynamics._core import Accelerations, Effort, JointError, joint_errors
 from inverse_dynamics.arguments import checked
-from inverse_dynamics.evaluation.accelerations import Samples
 from inverse_dynamics.evaluation.bands import read_band
+from inverse_dynamics.evaluation.exports import series_columns
+from inverse_dynamics.evaluation.ranges import outside_of_seen
 from inverse_dynamics.evaluation.run import Run, RunOptions, open_run
-from inverse_dynamics.evaluation.seen_range import outside_of_seen
-from inverse_dynamics.evaluation.views import Views
+from inverse_dynamics.evaluation.samples import MASKS, SampleReport
+from inverse_dynamics.evaluation.tables import evaluation_table, heading
+from inverse_dynamics.installation.extras import require
+from inverse_dynamics.outputs.files import write_text
+from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.progress import no_progress
+from inverse_dynamics.recordings.bags import write_torques
 from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import Robot
+from inverse_dynamics.show.result import PAGE, SERIES, ResultDirectory, files_of
+from inverse_dynamics.show.tables import error_columns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from matplotlib.figure import Figure
     from typing_extensions import Unpack
 
     from inverse_dynamics.arrays import DataFrame, Floats
     from inverse_dynamics.diagnosis.compare import Cause
     from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.joint_log import Storage
+    from inverse_dynamics.show.result import Line
 
 __all__ = [
     "Evaluation",
@@ -50,9 +62,14 @@ __all__ = [
 CAUSE = "likely cause of the error: "
 """Prefix of the note that states a diagnosis."""
 
+SCHEMA = 4
+RECORDED = ("header_stamps", "receive_stamps", "q", "qd", "effort")
+
+_MOST_JOINTS = 12  # of a text on one screen
+
 
 @dataclass(frozen=True, repr=False)
-class Evaluation(Views):
+class Evaluation(ResultDirectory):
     """Measured and computed torques of a recorded motion. N samples, n joints; order of the chain.
 
     robot: the run configuration with everything that was overridden; joints and effort filled in.
@@ -67,13 +84,25 @@ class Evaluation(Views):
     ['shoulder_lift_joint']
     """
 
+    contents = files_of(
+        "evaluation.json",
+        "torques",
+        "metrics.json",
+        SERIES,
+        "bag/metadata.yaml",
+        "bag/bag.db3*",
+        "bag/bag.mcap",
+        added=("series.csv", "series.parquet", PAGE),  # by `ids export` and `ids report`, for one
+    )
+    data = "metrics.json"
+
     robot: Robot
     bag: Path
     log: JointLog  # its efforts are as recorded
     joint_names: tuple[str, ...]  # those of the solver; the recording's are log.joint_names
     units: tuple[str, ...]
     accelerations: Accelerations
-    samples: Samples
+    samples: SampleReport
     time: Floats  # (N,) s since the first sample
     qdd: Floats  # (N, n) rad/s^2 or m/s^2
     measured: Floats  # (N, n) N m or N: the torques that recorded efforts mean
@@ -101,12 +130,16 @@ class Evaluation(Views):
         ]
         return np.array(within) / np.count_nonzero(kept)
 
-    @cached_property
+    @property
     def explained(self) -> Evaluation:
         """The same with the likely causes of its errors: the last of the notes; efforts are doubted with them."""
+        return self if self.run is None or self.causes is not None else self._diagnosed
+
+    @cached_property
+    def _diagnosed(self) -> Evaluation:
         from inverse_dynamics.diagnosis.diagnose import diagnose
 
-        return self if self.run is None or self.causes is not None else diagnose(self)
+        return diagnose(self)
 
     @cached_property
     def arm(self) -> Arm:
@@ -122,6 +155,136 @@ class Evaluation(Views):
     def mean_rmse(self) -> float:
         """Mean over the joints of the root mean square errors."""
         return sum(e.rmse for e in self.errors) / len(self.errors)
+
+    def numbers(self) -> dict[str, Any]:
+        """For people and scripts: errors, what was evaluated, notes and the likely cause of the errors; for JSON."""
+        found = self.explained
+        return {
+            "robot": found.robot.name,
+            "plugin": found.robot.plugin,
+            "friction": found.robot.friction,
+            "bag": found.bag,
+            "samples": len(found.log),
+            "accelerations": found.accelerations,
+            "effort": found.effort,
+            "joints": found.errors,
+            "mean_rmse": found.mean_rmse if len(set(found.units)) == 1 else None,
+            **({} if found.band is None else {"in_band": found.coverage}),
+            "kept": {
+                "samples": len(found.log) - found.samples.left_out,
+                "joints": found.errors_of_kept,
+            },
+            "notes": found.notes,
+            "diagnosis": [{**vars(c), "reference": c.reference} for c in found.diagnosis],
+        }
+
+    def lines(self) -> list[Line]:
+        """What the screen shows."""
+        return [
+            *heading(self),
+            ("accelerations", self.accelerations.summary),
+            ("effort means", self.effort.summary),
+            ("note", self.notes),
+            evaluation_table(self),
+        ]
+
+    def inputs(self) -> tuple[Path | None, ...]:
+        """The recording and the robot's files."""
+        return self.bag, *self.robot.files
+
+    def arrays(self) -> dict[str, Any]:
+        """Samples, not copied: as recorded, computed, masks."""
+        computed = ["time", "qdd", "measured", "computed"]
+        computed += [] if self.band is None else ["band"]
+        return {
+            **{name: getattr(self.log, name) for name in RECORDED},
+            **{name: getattr(self, name) for name in computed},
+            **{name: getattr(self.samples, name) for name in MASKS},
+        }
+
+    def write_more(self, directory: Path, storage: Storage | None, progress: Progress) -> None:
+        """Write the recording, and evaluation.json: all that the other files lack."""
+        found = self.explained
+        log, torques = found.log, (found.computed, found.measured)
+        write_torques(
+            directory / "bag", storage or log.storage, "/torques", log, torques, progress=progress
+        )
+        names = ("robot", "bag", "joint_names", "units", "accelerations", "effort", "notes")
+        recording = ("joint_names", "frame_id", "clock", "topic", "storage", "effort_is", "notes")
+        about = {
+            "schema": SCHEMA,
+            **{name: getattr(found, name) for name in names},
+            "samples": len(log),
+            "duration": log.duration,
+            "sampling": {"period": found.samples.period, "jitter": found.samples.jitter},
+            "recording": {name: getattr(log, name) for name in recording},
+        }
+        write_text(directory / self.contents.mark, json_text(about))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All that files hold: a copy has no run, whose solver can't be copied."""
+        found = self.explained
+        return {field.name: getattr(found, field.name) for field in fields(found)} | {"run": None}
+
+    def __repr__(self) -> str:
+        rows = self._rows()
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        lines = [
+            f"Evaluation of {self.bag.name} as {self.robot.name}: {len(self.log)} samples, "
+            f"{self.log.duration:.1f} s, mean RMSE {self.mean_rmse:.4g}",
+            *("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows[: _MOST_JOINTS + 1]),
+        ]
+        if len(rows) > _MOST_JOINTS + 1:
+            lines.append(f"... and {len(rows) - _MOST_JOINTS - 1} more joints")
+        return "\n".join([*lines, *self.explained.notes[-1:]])
+
+    def _repr_html_(self) -> str:
+        """For notebooks."""
+        names, *rows = self._rows()
+        head = "".join(f"<th>{name}</th>" for name in names)
+        body = "".join(
+            f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows
+        )
+        notes = "".join(f"<li>{escape(note)}</li>" for note in self.explained.notes)
+        title = f"{self.bag.name}, {self.robot.name}: mean RMSE {self.mean_rmse:.4g}"
+        return f"<b>{escape(title)}</b><table><tr>{head}</tr>{body}</table>" + (
+            notes and f"<ul>{notes}</ul>"
+        )
+
+    def _rows(self) -> list[tuple[str, ...]]:
+        """Headings, and the errors of each joint."""
+        columns, texts = error_columns(self.errors), []
+        for name, values in columns.items():
+            form = "{:.3g} %" if name.endswith(" [%]") else "{:.4g}"
+            texts.append([name.removesuffix(" [%]"), *map(form.format, values)])
+        joints = [("joint", "unit"), *((e.joint, e.unit) for e in self.errors)]
+        return [(*joint, *row) for joint, *row in zip(joints, *texts, strict=True)]
+
+    def plot(self) -> Figure:
+        """Measured and computed torque and the error of each joint, as a figure of matplotlib.
+
+        Raises MissingPackageError.
+        """
+        require("a figure", "matplotlib")
+        from inverse_dynamics.evaluation.figure import torque_figure
+
+        return torque_figure(self)
+
+    def to_pandas(self) -> DataFrame:
+        """All series as a pandas.DataFrame, a row per sample; columns: evaluation/exports.py.
+
+        Raises MissingPackageError.
+        """
+        return self._frame("pandas")
+
+    def to_polars(self) -> DataFrame:
+        """The same as a polars.DataFrame."""
+        return self._frame("polars")
+
+    def _frame(self, library: str) -> DataFrame:
+        require("a data frame", library)
+        columns = {column.name: column.values for column in series_columns(self)}
+        return import_module(library).DataFrame(columns)
 
 
 write_evaluation = Evaluation.save

@@ -1,10 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All series of an evaluation as one table, a row per sample: `ids export --help` lists the columns.
+"""All series of an evaluation as one table, a row per sample.
 
-export_series(read_evaluation("result"), Path("series.parquet"))
+    export_series(read_evaluation("result"), Path("series.parquet"))
 
-Its columns: evaluation/series.py. Every digit is kept. Parquet knows the unit of each column (key
-`unit` of its metadata).
+Columns, J being a joint as the recording names it:
+
+recording                             its name among others, where one is given
+time                                  s since the first sample
+position.J velocity.J acceleration.J  of the motion; the acceleration is the estimated one
+effort.J                              as recorded; current.J in its place where it is a current
+measured.J computed.J error.J         torques; error = computed - measured
+band.J                                half the width of the model's 95 % band, where it is known
+repeated ... kept                     what was found in a sample, true or false: see samples.py
+
+Every digit is kept. Parquet knows the unit of each column (key `unit` of its metadata).
 """
 
 from __future__ import annotations
@@ -12,10 +21,10 @@ from __future__ import annotations
 import csv
 import io
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.evaluation.series import series_columns
+from inverse_dynamics.evaluation.samples import MASKS
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.outputs.files import check_output_file, files_written_whole
 from inverse_dynamics.progress import no_progress
@@ -25,10 +34,43 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.progress import Progress
 
 _ROWS = 65536  # written together
+
+
+class Column(NamedTuple):
+    """A series: N values of a unit; none for what is true or false."""
+
+    name: str
+    unit: str
+    values: Floats | Mask
+
+
+def series_columns(evaluation: Evaluation) -> list[Column]:
+    """Columns of an Evaluation, in the order of the module's text."""
+    columns = [Column("time", "s", evaluation.time)]
+    log = evaluation.log
+    error = evaluation.computed - evaluation.measured
+    currents = evaluation.effort.meaning == "current"
+    for j, joint in enumerate(log.joint_names):
+        torque = evaluation.units[j]
+        angle = "m" if torque == "N" else "rad"
+        series = (
+            ("position", angle, log.q),
+            ("velocity", f"{angle}/s", log.qd),
+            ("acceleration", f"{angle}/s^2", evaluation.qdd),
+            ("current", "A", log.effort) if currents else ("effort", torque, log.effort),
+            ("measured", torque, evaluation.measured),
+            ("computed", torque, evaluation.computed),
+            ("error", torque, error),
+            *([] if evaluation.band is None else [("band", torque, evaluation.band)]),
+        )
+        columns += [Column(f"{name}.{joint}", unit, rows[:, j]) for name, unit, rows in series]
+    columns += [Column(mask, "", getattr(evaluation.samples, mask)) for mask in MASKS]
+    return columns
 
 
 def export_series(

@@ -12,9 +12,8 @@ import numpy as np
 
 from inverse_dynamics._core import Accelerations, Effort, JointError, Verdict
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
+from inverse_dynamics.evaluation.evaluation import RECORDED, SCHEMA, Evaluation, evaluate
 from inverse_dynamics.evaluation.run import RunOptions, overridden
-from inverse_dynamics.evaluation.views import RECORDED, SCHEMA
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.outputs.files import written_whole
 from inverse_dynamics.outputs.plain import read_back

@@ -24,7 +24,6 @@ from inverse_dynamics.evaluation import files as evaluations
 from inverse_dynamics.evaluation.cluster import check_stopped, on_cluster
 from inverse_dynamics.evaluation.evaluation import Evaluation
 from inverse_dynamics.evaluation.run import RunOptions, check_options, of_run, overridden
-from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
 from inverse_dynamics.evaluation.workers import Failure, cores, in_processes
 from inverse_dynamics.outputs.files import Contents, write_text, written_whole
 from inverse_dynamics.outputs.plain import json_text
@@ -40,6 +39,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Unpack
 
+    from inverse_dynamics._core import Accelerations, JointError
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Storage
 
@@ -60,6 +60,31 @@ COLUMNS = (
 )
 
 _MOST_TOLD = 5  # failures, in a text
+
+
+@dataclass(frozen=True)
+class EvaluationSummary:
+    """An evaluation without its samples, and the name that its recording has among others."""
+
+    name: str
+    bag: Path
+    robot: str
+    plugin: str
+    start: float  # s: stamp of the first sample
+    duration: float  # s
+    window: TimeWindow  # the requested one
+    samples: int
+    kept_samples: int  # those of errors_of_kept
+    accelerations: Accelerations
+    effort: str  # what recorded efforts mean: torque, current, torque_without_gravity
+    errors: tuple[JointError, ...]
+    errors_of_kept: tuple[JointError, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def mean_rmse(self) -> float:
+        """Mean over the joints of the root mean square errors."""
+        return sum(error.rmse for error in self.errors) / len(self.errors)
 
 
 @dataclass(frozen=True)
@@ -231,6 +256,27 @@ def _evaluate_one(task: _Task) -> EvaluationSummary:
     )
     window = TimeWindow(task.options.get("start"), task.options.get("end"))
     return summary_of(evaluation, task.name, window)
+
+
+def summary_of(evaluation: Evaluation, name: str, window: TimeWindow) -> EvaluationSummary:
+    """The summary of an evaluation. window: of the recording, that was evaluated."""
+    samples = len(evaluation.log)
+    return EvaluationSummary(
+        name=name,
+        bag=evaluation.bag,
+        robot=evaluation.robot.name,
+        plugin=evaluation.robot.plugin,
+        start=float(evaluation.log.stamps[0]) * 1e-9,
+        duration=evaluation.log.duration,
+        window=window,
+        samples=samples,
+        kept_samples=samples - evaluation.samples.left_out,
+        accelerations=evaluation.accelerations,
+        effort=evaluation.effort.meaning,
+        errors=evaluation.errors,
+        errors_of_kept=evaluation.errors_of_kept,
+        notes=evaluation.explained.notes,
+    )
 
 
 def _sorted_out(

@@ -19,7 +19,7 @@ from inverse_dynamics.wording import counted, listed, solver_name
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics.evaluation.summary import EvaluationSummary
+    from inverse_dynamics.evaluation.many_evaluations import EvaluationSummary
 
 _MOST_SHADED = 3.0  # times the median
 _EARLIEST = 1e9  # s, September 2001: an earlier stamp is no date

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, cast
 
 from inverse_dynamics import _core
-from inverse_dynamics.evaluation.accelerations import MASKS, Samples
 from inverse_dynamics.evaluation.posture import posture_of
+from inverse_dynamics.evaluation.samples import MASKS, SampleReport
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.bags import topics_of
 from inverse_dynamics.recordings.joint_log import JointLog, check_clock
@@ -42,7 +42,7 @@ class Overrides(TypedDict, total=False):
 
     parameters: of the solver, one by one. drive_gains: N m/A (prismatic N/A) of efforts that are currents. columns,
     scale, sign, rate, gears: what the names of a table's columns don't say, see log_format.LogFormat.
-    accelerations, cutoff: one of accelerations.METHODS; Hz, of a low-pass.
+    accelerations, cutoff: one of METHODS; Hz, of a low-pass.
     """
 
     plugin: str | None
@@ -68,7 +68,7 @@ class RunOptions(Overrides, total=False):
     """What is said about a recording.
 
     effort_is: what recorded efforts mean, one of EFFORT_CHOICES. clock: which stamps are the time (auto).
-    start, end: s since the first sample; the others aren't read. without_rules: those of accelerations.RULES not to
+    start, end: s since the first sample; the others aren't read. without_rules: those of RULES not to
     be acted upon.
     """
 
@@ -87,7 +87,7 @@ class Run:
     arm: Arm  # the robot, with everything that was overridden, and its solver
     log: JointLog  # its efforts are as recorded
     accelerations: Accelerations
-    samples: Samples
+    samples: SampleReport
     time: Floats  # (N,) s since the first sample
     qdd: Floats  # (N, n) rad/s^2 or m/s^2
     notes: tuple[str, ...]  # what was left out or assumed in opening, in words
@@ -171,15 +171,12 @@ def open_run(
         recording=", ".join(filter(None, (f"{bag}", f"{window}"))),
         topic=motion.topic,
         units=list(arm.units),
-        notes=list(motion.notes if isinstance(motion, JointLog) else ()),
+        notes=list(motion.notes),
         scratch=scratch,
     )
-    found = _core.read_motion(
-        arm.solver,
-        motion if isinstance(motion, JointLog) else motion.recording,
-        core,
-        _share_of(motion, progress),
-    )
+    told = _share_of(motion, progress)
+    recorded = motion if isinstance(motion, JointLog) else motion.recording
+    found = _core.read_motion(arm.solver, recorded, core, told)
     arrays = found.table.series
     return Run(
         bag=bag,
@@ -189,7 +186,7 @@ def open_run(
         if isinstance(motion, JointLog)
         else motion.log(found.table),
         accelerations=found.accelerations,
-        samples=Samples(
+        samples=SampleReport(
             **{name: arrays[name] for name in MASKS}, period=found.period, jitter=found.jitter
         ),
         time=arrays["time"],
@@ -204,7 +201,7 @@ def open_run(
         posture_changes=posture.moves,
         motion=found,
         options=core,
-        progress=_share_of(motion, progress),
+        progress=told,
     )
 
 

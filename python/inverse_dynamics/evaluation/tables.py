@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from inverse_dynamics.evaluation.evaluation import Evaluation
-    from inverse_dynamics.evaluation.summary import EvaluationSummary
+    from inverse_dynamics.evaluation.many_evaluations import EvaluationSummary
     from inverse_dynamics.show.result import Line
 
 

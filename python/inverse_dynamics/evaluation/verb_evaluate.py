@@ -109,28 +109,24 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.recordings.several_recordings import holds_recordings
+    from inverse_dynamics.evaluation.files import evaluate_into
+    from inverse_dynamics.recordings.several_recordings import holds_recordings, name_of
     from inverse_dynamics.recordings.tables import parts_joined
+    from inverse_dynamics.terminal.screen import progress_bar, show
 
     arguments.bags = parts_joined(arguments.bags)
     robot = chosen_robot(arguments)
-    asked = arguments.jobs is not None or arguments.scheduler is not None
-    several = asked or len(arguments.bags) > 1 or holds_recordings(arguments.bags[0])
     options = {
         "overwrite": arguments.overwrite,
         "storage": arguments.storage,
         "figures": arguments.figures,
         **given_overrides(arguments),
     }
-    (_run_many if several else _run_one)(arguments, robot, options)
-
-
-def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any]) -> None:
-    from inverse_dynamics.evaluation.files import evaluate_into
-    from inverse_dynamics.recordings.several_recordings import name_of
-    from inverse_dynamics.terminal.screen import progress_bar, show
-
-    (bag,) = arguments.bags
+    bag, *others = arguments.bags
+    asked = arguments.jobs is not None or arguments.scheduler is not None
+    if asked or others or holds_recordings(bag):
+        _run_many(arguments, robot, options)
+        return
     out = arguments.out or Path(f"{name_of(bag)}_{robot.name}")
     parquet = name_of(bag) if arguments.parquet else None
     with progress_bar() as progress:

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.errors import EvaluationError
-from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run
-from inverse_dynamics.evaluation.turns import on_one_turn
+from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run, torques_with_gravity
+from inverse_dynamics.evaluation.ranges import on_one_turn
 from inverse_dynamics.excitation.excitation import (
     Excitation,
     ExcitationOptions,
@@ -207,9 +207,10 @@ def _read(recording: Path | str, robot: Robot, progress: Progress) -> Evaluation
 
 
 def _samples(recording: Evaluation) -> tuple[list[Floats], float]:
-    """q, qd, qdd, measured (N, n), and the time between them [s]."""
+    """q, qd, qdd, measured with gravity (N, n), and the time between them [s]."""
     stride = max(1, round(_GIVEN_STEP / recording.samples.period))
-    arrays = (recording.log.q, recording.log.qd, recording.qdd, recording.measured)
+    measured = torques_with_gravity(recording)
+    arrays = (recording.log.q, recording.log.qd, recording.qdd, measured)
     whole = np.all([np.isfinite(array).all(axis=1) for array in arrays], axis=0)
     chosen = np.flatnonzero(recording.samples.kept & whole)[::stride]
     return [array[chosen] for array in arrays], stride * recording.samples.period
@@ -232,8 +233,6 @@ def _with_noise_of(unknowns: Unknowns, recordings: Sequence[Evaluation]) -> Unkn
         for recording in recordings:
             (q, qd, qdd, measured), period = _samples(recording)
             Z, computed = unknowns.rows_and_torques(q, qd, qdd)
-            if recording.effort.meaning == "torque_without_gravity":
-                measured = measured + unknowns.gravity(q)
             difference = measured - computed
             gram += unknowns.weighted_gram(Z, period)
             weighted = difference / unknowns.noise**2 * sample_weight(period)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics._core import Recording
 from inverse_dynamics.errors import BagError, OutputError
 from inverse_dynamics.outputs.files import (
     Contents,
@@ -20,7 +21,7 @@ from inverse_dynamics.outputs.files import (
 )
 from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.progress import no_progress
-from inverse_dynamics.recordings.bags import new_recording, open_recording, topics_of, unwritable
+from inverse_dynamics.recordings.bags import new_recording, topics_of, unwritable
 from inverse_dynamics.recordings.csv_table import CsvTable, is_csv
 from inverse_dynamics.recordings.joint_trajectories import MESSAGE_TYPE, typestore
 
@@ -104,11 +105,11 @@ def _write_bag(result: TrajectoryTorques, path: Path, progress: Progress) -> tup
     from rosbags.rosbag2 import Reader
 
     filled = iter(zip(result.trajectories, result.torques, strict=True))
-    recording = open_recording(result.path)
+    recording = Recording(result.path)
     total = sum(topic.message_count for topic in topics_of(recording))
     done = 0
     with Reader(result.path) as reader, new_recording(path, recording.storage) as writer:
-        # the reader knows definitions and qualities of service; open_recording() checks messages
+        # the reader knows definitions and qualities of service; Recording checks messages
         types = {c.topic: c.msgtype for c in reader.connections}
         copies = {c.topic: _copied(writer, c) for c in reader.connections}
         for topics, stamps, messages in recording.all_messages():

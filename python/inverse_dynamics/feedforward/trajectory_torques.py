@@ -19,7 +19,6 @@ import numpy as np
 
 from inverse_dynamics._core import check_torques
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.evaluation.motion_energy import MotionEnergy
 from inverse_dynamics.feedforward.tables import load_lines, load_numbers
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.csv_table import is_csv
@@ -30,6 +29,7 @@ from inverse_dynamics.recordings.tables import open_table
 from inverse_dynamics.recordings.times import check_seconds
 from inverse_dynamics.recordings.vocabulary import ACCELERATION, POSITION, VELOCITY
 from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.motion_energy import MotionEnergy
 from inverse_dynamics.robots.robots import Robot, load_robot
 from inverse_dynamics.show.result import Result
 from inverse_dynamics.wording import counted

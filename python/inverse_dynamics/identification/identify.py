@@ -14,8 +14,8 @@ from inverse_dynamics import _core
 from inverse_dynamics.arguments import checked
 from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run, torques_with_gravity
 from inverse_dynamics.evaluation.posture import locked_joints, posture_of
+from inverse_dynamics.evaluation.ranges import on_one_turn
 from inverse_dynamics.evaluation.run import RunOptions, of_recording, overridden
-from inverse_dynamics.evaluation.turns import on_one_turn
 from inverse_dynamics.identification.baselines import baseline_torques, baselines
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.coupling import coupling_of

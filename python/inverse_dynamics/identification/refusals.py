@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.diagnosis.compare import Cause, residual_causes
-from inverse_dynamics.diagnosis.samples import pieces_of
+from inverse_dynamics.diagnosis.pieces import pieces_of
 from inverse_dynamics.evaluation.evaluation import CAUSE
 from inverse_dynamics.identification.result import IdentificationError, valid_samples
 from inverse_dynamics.wording import listed

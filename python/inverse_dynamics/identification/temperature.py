@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics import _core
 from inverse_dynamics.evaluation.bands import SHARE
 from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.identification.uncertainty import USUAL_COUNTS
@@ -72,7 +71,6 @@ def at_temperature(
         model=replace(found.model, friction=friction),
         band=replace(
             found.band,
-            arm=_core.ArmUncertainty(friction, found.factor),
             friction=friction,
             share=np.sqrt((USUAL_COUNTS * SHARE**2 + left) / (USUAL_COUNTS + count)),
         ),

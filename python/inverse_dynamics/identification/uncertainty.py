@@ -78,7 +78,7 @@ def band_of(
     friction = chosen.fit.friction
     none, greatest = np.zeros(len(friction)), np.quantile(tau, _GREATEST, axis=0)
     return TorqueBand(
-        arm=_core.ArmUncertainty(friction, factor),
+        factor=factor,
         friction=friction,
         noise=chosen.noise,
         level=none if limits is None else usual_level(greatest, limits),

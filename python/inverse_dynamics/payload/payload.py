@@ -34,7 +34,7 @@ from inverse_dynamics.payload.tables import payload_lines, payload_numbers
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.model_errors import read_uncertainty
 from inverse_dynamics.robots.robots import RIGID_BODY
-from inverse_dynamics.robots.solvers import brings_own_model, solver_of
+from inverse_dynamics.robots.solvers import brings_own_model
 from inverse_dynamics.show.result import ResultFiles
 from inverse_dynamics.wording import listed
 
@@ -70,15 +70,6 @@ _LEAST_VARIATION = 0.1  # of the largest torques: of joints that this is asked o
 
 class PayloadError(EvaluationError):
     """A recording that doesn't determine a payload: the text states why, and the remedy."""
-
-
-@dataclass(frozen=True)
-class EmptyRun:
-    """Offsets and noise of the same arm without a load: (n,) N m (prismatic N)."""
-
-    offset: Floats  # mean of measured minus computed
-    offset_deviation: Floats  # of that mean
-    noise: ResidualNoise
 
 
 @dataclass(frozen=True)
@@ -202,7 +193,7 @@ def estimate_payload(
     evaluation = evaluate(bag, robot, progress=progress, **options)
     _require_own_tip(evaluation.robot, options.get("tip"))
     _require_plausible(evaluation)
-    solver = solver_of(evaluation.robot)
+    solver = evaluation.arm.solver_with()  # one that may carry a load
     arm, told = _arm_of(evaluation.robot)
     alone, phantom = None, []
     if empty is not None:
@@ -245,8 +236,8 @@ def samples_of(evaluation: Evaluation) -> Samples:
     )
 
 
-def empty_run(samples: Samples, solver: Solver) -> EmptyRun:
-    """Offsets and noise of an arm that carries nothing."""
+def empty_run(samples: Samples, solver: Solver) -> PayloadOptions:
+    """Offsets and noise of an arm that carries nothing: mean of measured minus computed, its deviation."""
     residual = samples.residual(solver)
     offset = residual.mean(axis=0)
     noise = residual_noise(samples.time, residual - offset)
@@ -256,20 +247,20 @@ def empty_run(samples: Samples, solver: Solver) -> EmptyRun:
     if len(means) > 1:
         deviation = np.std(means, axis=0, ddof=1) / math.sqrt(len(means))
     least = _LEAST_SHARE * np.hypot(noise.white, noise.correlated)
-    return EmptyRun(offset, np.maximum(deviation, least), noise)
+    return PayloadOptions(noise, offset=offset, offset_deviation=np.maximum(deviation, least))
 
 
 def fit_payload(
     samples: Samples,
     solver: Solver,
-    empty: EmptyRun | None = None,
+    empty: PayloadOptions | None = None,
     arm: ArmUncertainty | None = None,
     where: str = "payload",
 ) -> Fit:
     """Estimate the body at the tip of the solver's robot, which is as before when this returns.
 
-    Torques and estimate are computed in turns: friction may grow with the load. arm: what the solver's
-    model may be wrong by. where: of errors. Raises PayloadError.
+    Torques and estimate are computed in turns: friction may grow with the load. empty: as empty_run() gives it.
+    arm: what the solver's model may be wrong by. where: of errors. Raises PayloadError.
     """
     before = samples.residual(solver)
     if empty is None:

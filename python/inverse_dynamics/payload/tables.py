@@ -9,11 +9,10 @@ import numpy as np
 
 from inverse_dynamics.evaluation.tables import heading
 from inverse_dynamics.outputs.plain import objects_of_joints
-from inverse_dynamics.payload.universal_robots import UPPER
+from inverse_dynamics.payload.files import upper
 from inverse_dynamics.show.tables import ReportTable, number, of_joints
 
 if TYPE_CHECKING:
-    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.payload.payload import Payload
     from inverse_dynamics.show.result import Line
 
@@ -53,11 +52,6 @@ def payload_numbers(payload: Payload) -> dict[str, Any]:
         "joints": objects_of_joints(payload.joint_names, evaluation.units, columns),
         "notes": payload.notes,
     }
-
-
-def upper(matrix: Floats) -> list[float]:
-    """Entries of a symmetric matrix (3, 3), by rows."""
-    return [float(matrix[entry]) for entry in UPPER]
 
 
 def payload_lines(payload: Payload) -> list[Line]:

@@ -70,8 +70,8 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.payload.files import payload_request
     from inverse_dynamics.payload.payload import Payload, estimate_payload
-    from inverse_dynamics.payload.universal_robots import payload_request
     from inverse_dynamics.terminal.screen import progress_bar, show
 
     robot, out, figures = chosen_robot(arguments), arguments.out, arguments.figures

@@ -46,14 +46,9 @@ class TopicSummary(NamedTuple):
     message_count: int
 
 
-def open_recording(path: Path | str) -> Recording:
-    """The recording: directory with metadata.yaml, or a .db3 or .mcap file. Raises BagError."""
-    return Recording(Path(path))
-
-
 def read_topics(path: Path | str) -> list[TopicSummary]:
     """Topics of a recording, by name."""
-    return topics_of(open_recording(path))
+    return topics_of(Recording(Path(path)))
 
 
 def topics_of(recording: Recording) -> list[TopicSummary]:
@@ -99,16 +94,9 @@ def read_joint_log(
     True
     """
     check_clock(clock)
-    opened = open_joint_states(path, topic)
-    expected = opened.recording.expected_messages(opened.topic)
-    return opened.log(
-        opened.recording.read_samples(
-            opened.topic,
-            joints,
-            clock,
-            lambda share: progress("reading", round(share * expected), expected),
-        )
-    )
+    recording = Recording(Path(path))
+    states = JointStateTopic(recording, recording.topic_of_type(MESSAGE_TYPE, topic))
+    return states.read(joints, clock, progress)
 
 
 class JointStateTopic(NamedTuple):
@@ -116,8 +104,19 @@ class JointStateTopic(NamedTuple):
 
     recording: Recording
     topic: str
-    storage: Storage
     effort_is: str = ""  # the format states no meaning
+    notes: tuple[str, ...] = ()  # those of reading come with the table
+
+    def read(self, joints: Sequence[str], clock: Clock, progress: Progress) -> JointLog:
+        """Read them; the arguments are those of read_joint_log(). Raises BagError."""
+        expected = self.recording.expected_messages(self.topic)
+        table = self.recording.read_samples(
+            self.topic,
+            joints,
+            clock,
+            lambda share: progress("reading", round(share * expected), expected),
+        )
+        return self.log(table)
 
     def log(self, table: SampleTable) -> JointLog:
         """What was read, as views of the table."""
@@ -132,16 +131,9 @@ class JointStateTopic(NamedTuple):
             frame_id=table.frame_id,
             clock=table.clock,
             topic=self.topic,
-            storage=self.storage,
+            storage=self.recording.storage,
             notes=tuple(table.notes),
         )
-
-
-def open_joint_states(path: Path | str, topic: str = "") -> JointStateTopic:
-    """Joint states of a topic; none given: of the only one with any. Raises BagError."""
-    recording = open_recording(path)
-    topic = recording.topic_of_type(MESSAGE_TYPE, topic)
-    return JointStateTopic(recording, topic, recording.storage)
 
 
 def write_joint_logs(

@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics._core import Recording
 from inverse_dynamics.decimals import LARGEST
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.progress import no_progress
-from inverse_dynamics.recordings.bags import error_text, open_recording
+from inverse_dynamics.recordings.bags import error_text
 from inverse_dynamics.recordings.joint_log import JointLog
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def read_joint_trajectories(
     path: Path, topic: str = "", progress: Progress = no_progress
 ) -> list[JointTrajectory]:
     """Messages of one topic; none given: of the only one with trajectories. Raises BagError."""
-    recording = open_recording(path)
+    recording = Recording(path)
     topic = recording.topic_of_type(MESSAGE_TYPE, topic)
     where = f"{path}: {topic}"
     found: list[JointTrajectory] = []

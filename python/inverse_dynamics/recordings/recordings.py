@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics._core import Recording
+from inverse_dynamics.arrays import whole_turns
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings import bags, joint_trajectories
@@ -31,7 +33,6 @@ from inverse_dynamics.recordings.vocabulary import ACCELERATION, EFFORT, POSITIO
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from inverse_dynamics._core import Recording
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Clock
@@ -103,10 +104,7 @@ def read_recording(
         form=form,
         progress=progress,
     )
-    if isinstance(motion, JointLog):
-        return motion
-    assert isinstance(path, (str, Path))
-    return bags.read_joint_log(path, joints, topic=motion.topic, clock=clock, progress=progress)
+    return motion if isinstance(motion, JointLog) else motion.read(joints, clock, progress)
 
 
 def open_motion(
@@ -136,7 +134,7 @@ def open_motion(
             f"{path}: expected a recording of ROS or a table, got {path.suffix}; convert it: "
             f"{command.format(path=shlex.quote(f'{path}'), stem=shlex.quote(path.stem))}"
         )
-    recording = bags.open_recording(path)
+    recording = Recording(path)
     topics = bags.topics_of(recording)
     types = {t.name: t.message_type for t in topics if t.message_count or t.name == topic}
     types = types or {t.name: t.message_type for t in topics}
@@ -145,26 +143,23 @@ def open_motion(
     if types.get(topic) == joint_trajectories.MESSAGE_TYPE:
         trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
         log = joint_trajectories.joint_log_of(trajectories, joints, clock, topic, recording.storage)
-    elif form.scale or form.sign or form.gears:
-        log = bags.read_joint_log(path, joints, topic=topic, clock=clock, progress=progress)
     else:
-        return bags.open_joint_states(path, topic)
+        topic = recording.topic_of_type(bags.MESSAGE_TYPE, topic)
+        states = bags.JointStateTopic(recording, topic)
+        if not (form.scale or form.sign or form.gears):
+            return states
+        log = states.read(joints, clock, progress)
     return _scaled(log, form, f"{path}")
 
 
 def _scaled(log: JointLog, form: LogFormat, where: str) -> JointLog:
     """The log with what is stated: other units, other signs. Raises BagError."""
-    numbers = {POSITION: log.q, VELOCITY: log.qd, EFFORT: log.effort}
+    kinds = {"q": POSITION, "qd": VELOCITY, "effort": EFFORT}
     if log.qdd is not None:
-        numbers[ACCELERATION] = log.qdd
-    numbers = form.scaled(numbers, {}, len(log.joint_names), where)
-    return replace(
-        log,
-        q=numbers[POSITION],
-        qd=numbers[VELOCITY],
-        effort=numbers[EFFORT],
-        qdd=numbers.get(ACCELERATION),
-    )
+        kinds["qdd"] = ACCELERATION
+    numbers = {kind: getattr(log, field) for field, kind in kinds.items()}
+    scaled: dict[str, Any] = form.scaled(numbers, {}, len(log.joint_names), where)
+    return replace(log, **{field: scaled[kind] for field, kind in kinds.items()})
 
 
 def position_ranges(
@@ -193,9 +188,7 @@ def position_ranges(
             if not len(q):
                 continue
             if name in turning:
-                q = q - 2 * np.pi * np.round(
-                    (q - first.setdefault(name, float(q[0]))) / (2 * np.pi)
-                )
+                q = q - whole_turns(q - first.setdefault(name, float(q[0])))
             least, mean, greatest = found.get(name, (np.inf, 0.0, -np.inf))
             count = counts[name] = counts.get(name, 0) + len(q)
             mean += float((q - mean).sum()) / count
@@ -224,7 +217,7 @@ def _positions(
         log = read_ros1_log(path, topic=topic)
         yield log.joint_names, factors * log.q
         return
-    recording = bags.open_recording(path)
+    recording = Recording(path)
     there = {t.name: t for t in bags.topics_of(recording) if t.message_type == bags.MESSAGE_TYPE}
     usual = [usual_topic] if usual_topic in there else there
     for name in topic.split("+") if topic else usual:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.arrays import stretches
 from inverse_dynamics.evaluation.page import model_facts
 from inverse_dynamics.retiming.figure import JOINT_COLORS
 from inverse_dynamics.retiming.tables import retime_table
@@ -113,9 +114,8 @@ def _torque_plot(
 
 def spans(place: Floats, flags: Mask) -> list[tuple[float, float]]:
     """Where flags of samples hold: from, to; half way to their neighbours."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], flags.astype(int), [0]))))
     borders = np.concatenate(([place[0]], (place[1:] + place[:-1]) / 2, [place[-1]]))
-    return [(float(borders[a]), float(borders[b])) for a, b in edges.reshape(-1, 2)]
+    return list(zip(*(borders[edges].tolist() for edges in stretches(flags)), strict=True))
 
 
 def _strip(result: Retimed) -> dict[str, Any]:

@@ -25,7 +25,6 @@ from inverse_dynamics._core import (
 )
 from inverse_dynamics.arguments import checked
 from inverse_dynamics.errors import BagError, UserError
-from inverse_dynamics.evaluation.motion_energy import MotionEnergy
 from inverse_dynamics.recordings.csv_table import is_csv
 from inverse_dynamics.recordings.joint_trajectories import of_one_motion, read_joint_trajectories
 from inverse_dynamics.recordings.log_format import LogFormat
@@ -38,6 +37,7 @@ from inverse_dynamics.retiming.page import retime_page
 from inverse_dynamics.retiming.tables import retime_lines, retime_numbers
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.located_yaml import read_mapping
+from inverse_dynamics.robots.motion_energy import MotionEnergy
 from inverse_dynamics.robots.robots import Robot, load_robot
 from inverse_dynamics.show.result import PAGE, ResultDirectory, files_of
 from inverse_dynamics.wording import counted

@@ -22,3 +22,10 @@ METHODS = {
     "given": "accelerations of the recording",
     "backward-difference": "(qd[k] - qd[k-1]) / (t[k] - t[k-1]), the first one zero; no filter",
 }
+
+RULES = {  # of samples: inverse_dynamics_evaluation/samples.hpp
+    "repeated": "samples that repeat the previous one are left out of the differentiation",
+    "non-increasing": "samples whose stamp isn't later than all previous ones are left out of it too",
+    "time-base": "stamps that contradict positions and velocities are replaced by equidistant ones",
+    "start-transient": "efforts that jump at the very start are left out of the second metrics",
+}

@@ -33,7 +33,7 @@ from inverse_dynamics.show.plots import FORMATS, check_formats, save_figure
 from inverse_dynamics.show.tables import ReportTable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from typing import Any
 
     from matplotlib.figure import Figure
@@ -55,6 +55,9 @@ _MOST_LINES, _LONGEST_LINE = 10, 110  # of repr()
 class Result(ABC):
     """What a feature gives back."""
 
+    plot: Callable[[], Figure]  # of matplotlib, where there is one; raises MissingPackageError
+    page: Callable[[], str]  # HTML, complete in itself, where there is one
+
     @abstractmethod
     def numbers(self) -> dict[str, Any]:
         """All but samples, for JSON."""
@@ -66,14 +69,6 @@ class Result(ABC):
     def inputs(self) -> Iterable[Path | None]:
         """Files that it was made of, which must not be overwritten."""
         return ()
-
-    def plot(self) -> Figure:
-        """A figure of matplotlib, where there is one. Raises MissingPackageError."""
-        raise NotImplementedError
-
-    def page(self) -> str:
-        """An HTML page, complete in itself, where there is one."""
-        raise NotImplementedError
 
     def __repr__(self) -> str:
         lines = [type(self).__name__]
@@ -88,13 +83,12 @@ class ResultDirectory(Result):
 
     contents: ClassVar[Contents]
     data: ClassVar[str] = ""  # file of the numbers, where it isn't the mark of `contents`
+    arrays: Callable[
+        [], dict[str, Any]
+    ]  # samples, for numpy.savez(), where SERIES is among the files
 
     def write_more(self, directory: Path, storage: Storage | None, progress: Progress) -> None:
         """Write what other results don't have."""
-
-    def arrays(self) -> dict[str, Any]:
-        """Samples, for numpy.savez()."""
-        raise NotImplementedError
 
     @classmethod
     def check(
@@ -247,7 +241,8 @@ class ResultFiles(Result):
             fresh = dict(zip(targets, places, strict=True))
             for file, text in texts.items():
                 write_text(fresh[file], text)
-            save_figure(self.plot, *map(fresh.__getitem__, drawn))
+            if drawn:
+                save_figure(self.plot, *map(fresh.__getitem__, drawn))
             self.test([fresh[file] for file in files])
 
 

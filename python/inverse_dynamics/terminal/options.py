@@ -16,10 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.evaluation.accelerations import RULES
 from inverse_dynamics.installation.extras import is_installed
 from inverse_dynamics.recordings.joint_log import CLOCKS
-from inverse_dynamics.robots.choices import EFFORT_CHOICES, METHODS
+from inverse_dynamics.robots.choices import EFFORT_CHOICES, METHODS, RULES
 from inverse_dynamics.terminal.values import (
     figure_formats,
     file_name,

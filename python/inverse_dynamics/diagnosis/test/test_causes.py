@@ -29,7 +29,7 @@ from inverse_dynamics.diagnosis.compare import (
     residual_causes,
 )
 from inverse_dynamics.diagnosis.rival import PAGE
-from inverse_dynamics.diagnosis.samples import Samples, pieces_of
+from inverse_dynamics.diagnosis.pieces import Pieces, pieces_of
 from inverse_dynamics.payload.payload import PayloadError, _require_plausible
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import robot_of_description
@@ -79,7 +79,7 @@ def torques_of(name: str, gravity=None, load=None, description: str = ""):
     return solver.torques
 
 
-def recorded(name: str, torques=None, friction: float = 0.04, speed: float = 1.0) -> Samples:
+def recorded(name: str, torques=None, friction: float = 0.04, speed: float = 1.0) -> Pieces:
     """What a robot with friction and noise sends. torques: of another robot than the description's."""
     solver = solver_of(name)
     time, q, qd, qdd = motion_of(len(solver.joint_names))
@@ -94,90 +94,90 @@ def recorded(name: str, torques=None, friction: float = 0.04, speed: float = 1.0
     return found
 
 
-def columns(samples: Samples, order: list[int]) -> Samples:
+def columns(samples: Pieces, order: list[int]) -> Pieces:
     return replace(
         samples,
         **{k: getattr(samples, k)[..., order] for k in ("q", "qd", "qdd", "measured")},
     )
 
 
-def swapped(i: int, j: int, samples: Samples) -> Samples:
+def swapped(i: int, j: int, samples: Pieces) -> Pieces:
     order = list(range(len(samples.joints)))
     order[i], order[j] = j, i
     return columns(samples, order)
 
 
-def swapped_efforts(i: int, j: int, samples: Samples) -> Samples:
+def swapped_efforts(i: int, j: int, samples: Pieces) -> Pieces:
     return replace(samples, measured=swapped(i, j, samples).measured)
 
 
-def turned_effort(j: int, samples: Samples) -> Samples:
+def turned_effort(j: int, samples: Pieces) -> Pieces:
     sign = np.where(np.arange(len(samples.joints)) == j, -1.0, 1.0)
     return replace(samples, measured=sign * samples.measured)
 
 
-def turned(j: int, samples: Samples) -> Samples:
+def turned(j: int, samples: Pieces) -> Pieces:
     sign = np.where(np.arange(len(samples.joints)) == j, -1.0, 1.0)
     values = {k: sign * getattr(samples, k) for k in ("q", "qd", "qdd", "measured")}
     return replace(samples, **values)
 
 
-def scaled(factors, samples: Samples) -> Samples:
+def scaled(factors, samples: Pieces) -> Pieces:
     factors = np.broadcast_to(factors, 7 if np.ndim(factors) else 1)
     return replace(samples, measured=samples.measured * factors[: len(samples.joints)])
 
 
-def per_mille(samples: Samples) -> Samples:
+def per_mille(samples: Pieces) -> Pieces:
     limits = {6: "ur10", 7: "panda"}[len(samples.joints)]
     return replace(samples, measured=1000 * samples.measured / model_of(limits).effort_limits)
 
 
-def rates(factor: float, samples: Samples) -> Samples:
+def rates(factor: float, samples: Pieces) -> Pieces:
     """Another time step, velocities of which were made from it."""
     s = samples
     return replace(s, time=s.time / factor, qd=factor * s.qd, qdd=factor**2 * s.qdd)
 
 
-def velocities(factor: float, samples: Samples) -> Samples:
+def velocities(factor: float, samples: Pieces) -> Pieces:
     return replace(samples, qd=factor * samples.qd, qdd=factor * samples.qdd)
 
 
-def of_motors(samples: Samples) -> Samples:
+def of_motors(samples: Pieces) -> Pieces:
     gears = GEARS[: len(samples.joints)]
     moved = {k: getattr(samples, k) * gears for k in ("q", "qd", "qdd")}
     return replace(samples, measured=samples.measured / gears, **moved)
 
 
-def in_degrees(samples: Samples) -> Samples:
+def in_degrees(samples: Pieces) -> Pieces:
     return replace(samples, **{k: np.degrees(getattr(samples, k)) for k in ("q", "qd", "qdd")})
 
 
-def positions_in_degrees(samples: Samples) -> Samples:
+def positions_in_degrees(samples: Pieces) -> Pieces:
     return replace(samples, q=np.degrees(samples.q))
 
 
-def velocities_in_degrees(samples: Samples) -> Samples:
+def velocities_in_degrees(samples: Pieces) -> Pieces:
     return replace(samples, qd=np.degrees(samples.qd), qdd=np.degrees(samples.qdd))
 
 
-def slow_clock(factor: float, samples: Samples) -> Samples:
+def slow_clock(factor: float, samples: Pieces) -> Pieces:
     return replace(samples, time=samples.time / factor, qdd=factor * samples.qdd)
 
 
-def clipped(j: int, samples: Samples) -> Samples:
+def clipped(j: int, samples: Pieces) -> Pieces:
     measured = samples.measured.copy()
     limit = np.quantile(np.abs(measured[..., j]), 0.6)
     measured[..., j] = np.clip(measured[..., j], -limit, limit)
     return replace(samples, measured=measured)
 
 
-def coupled(j: int, k: int, samples: Samples) -> Samples:
+def coupled(j: int, k: int, samples: Pieces) -> Pieces:
     measured = samples.measured.copy()
     measured[..., j] += measured[..., k]
     return replace(samples, measured=measured)
 
 
-def drifting(j: int, samples: Samples) -> Samples:
+def drifting(j: int, samples: Pieces) -> Pieces:
     measured = samples.measured.copy()
     span = np.ptp(measured[..., j])
     share = samples.time / samples.time.max()

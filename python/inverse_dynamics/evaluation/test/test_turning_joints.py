@@ -13,8 +13,7 @@ from simulation_arms import joint, link, robot
 
 from inverse_dynamics import Solver, evaluate, identify
 from inverse_dynamics.contacts.contacts import find_contacts
-from inverse_dynamics.evaluation.seen_range import outside_of_seen
-from inverse_dynamics.evaluation.turns import on_one_turn
+from inverse_dynamics.evaluation.ranges import on_one_turn, outside_of_seen
 from inverse_dynamics.excitation.excitation import ExcitationOptions
 from inverse_dynamics.excitation.excite import excite
 from inverse_dynamics.payload.payload import estimate_payload

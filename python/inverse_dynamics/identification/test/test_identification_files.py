@@ -18,7 +18,7 @@ from pages import data_of
 from inverse_dynamics import FastModel, Solver, evaluate, write_joint_logs
 from inverse_dynamics._core import RobotDescription
 from inverse_dynamics.errors import RobotError, SolverError
-from inverse_dynamics.evaluation.seen_range import outside_of_seen
+from inverse_dynamics.evaluation.ranges import outside_of_seen
 from inverse_dynamics.identification import files as identifications
 from inverse_dynamics.identification.files import model_file_text, write_identification
 from inverse_dynamics.identification.hold_out import hold_out

@@ -7,8 +7,8 @@ from example_recordings import JOINT_STATE, STORE, joint_state
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 
 from inverse_dynamics import write_joint_logs
+from inverse_dynamics._core import Recording
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.recordings.bags import open_recording
 from inverse_dynamics.recordings.joint_log import JointLog
 
 STORAGES = pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
@@ -33,7 +33,7 @@ def record(path, messages, storage="mcap"):
         connection = writer.add_connection("/joint_states", JOINT_STATE, typestore=STORE)
         for k, raw in enumerate(messages):
             writer.write(connection, k, raw)
-    return open_recording(path).joint_states()
+    return Recording(path).joint_states()
 
 
 def serialized(message: object, **options: bool) -> bytes:
@@ -151,6 +151,6 @@ def test_a_long_recording_is_read_by_rosbags_message_by_message(tmp_path, storag
             message = STORE.deserialize_cdr(raw, JOINT_STATE)
             assert received == stamps[row]
             np.testing.assert_array_equal(message.effort, numbers[2, row])
-    blocks = list(open_recording(tmp_path / "bag").joint_states())
+    blocks = list(Recording(tmp_path / "bag").joint_states())
     np.testing.assert_array_equal(np.concatenate([b[3] for b in blocks]), stamps[order])
     np.testing.assert_array_equal(np.concatenate([b[6] for b in blocks]), numbers[2, order])

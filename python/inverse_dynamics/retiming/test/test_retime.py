@@ -13,10 +13,10 @@ from scipy.interpolate import CubicSpline
 from inverse_dynamics import cli, load_robot, retime, trajectory_torques
 from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retime_path
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.evaluation.motion_energy import MotionEnergy
 from inverse_dynamics.retiming.page import retime_page, spans
 from inverse_dynamics.retiming.retiming import described_limits, sample_times, torque_limit
 from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.motion_energy import MotionEnergy
 from inverse_dynamics.robots.robots import with_changes
 
 WAYPOINTS = np.array(

@@ -15,7 +15,7 @@ from inverse_dynamics import _core, evaluate, identify, load_robot, write_joint_
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.bands import SHARE
 from inverse_dynamics.evaluation.evaluation import CAUSE
-from inverse_dynamics.evaluation.series import series_columns
+from inverse_dynamics.evaluation.exports import series_columns
 from inverse_dynamics.identification import cross_validation
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of

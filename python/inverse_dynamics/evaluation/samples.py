@@ -10,27 +10,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from inverse_dynamics.arrays import stretches
+
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Mask
     from inverse_dynamics.recordings.joint_log import JointLog
 
-# Help text of each rule.
-RULES = {
-    "repeated": "samples that repeat the previous one are left out of the differentiation",
-    "non-increasing": "samples whose stamp isn't later than all previous ones are left out of it too",
-    "time-base": "stamps that contradict positions and velocities are replaced by equidistant ones",
-    "start-transient": "efforts that jump at the very start are left out of the second metrics",
-}
-
-
 _MOST_SPANS = 500
 
-# Names of the masks of Samples, as files have them.
+# Names of the masks of SampleReport, as files have them.
 MASKS = ("repeated", "non_increasing", "start_transient", "isolated", "kept")
 
 
 @dataclass(frozen=True)
-class Samples:
+class SampleReport:
     """Findings about N samples."""
 
     repeated: Mask  # (N,) repeats the sample before
@@ -51,10 +46,7 @@ class Samples:
 
         log: all samples. Of more than 500 spans, those of the most samples.
         """
-        import numpy as np  # late: --help needs the rules alone
-
-        edges = np.flatnonzero(np.diff(np.concatenate([[True], self.kept, [True]])))
-        first, end = edges[::2], edges[1::2]
+        first, end = stretches(~self.kept)
         longest = np.sort(np.argsort(first - end, kind="stable")[:_MOST_SPANS])
         begins, ends = log.time_at(first[longest]), log.time_at(end[longest] - 1)
         return list(zip(begins.tolist(), ends.tolist(), strict=True))

@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a motion is within the range of the data that its model was identified from."""
+"""Ranges of motions: within that of a model's data or not, and with continuous joints on one turn."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.arrays import whole_turns
 from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from inverse_dynamics.arrays import Floats, Mask
+    from inverse_dynamics.evaluation.evaluation import Evaluation
 
 _BEYOND = (0.05, 0.05, 0.25)  # of what was seen, of q, qd, qdd, that depend on the filter
 _MOST_NAMED = 4
@@ -43,7 +46,7 @@ def outside_of_seen(
         greatest = values.max(axis=0, where=where, initial=-np.inf)
         low, high = ranges.T
         if name == "q":  # a continuous joint was seen on another turn, or all around
-            turn = 2 * np.pi * np.round((low + high - least - greatest) / (4 * np.pi)) * continuous
+            turn = whole_turns((low + high - least - greatest) / 2) * continuous
             around = continuous & (high - low >= 2 * np.pi)
             least = np.where(around, low, least + turn)
             greatest = np.where(around, high, greatest + turn)
@@ -60,3 +63,20 @@ def outside_of_seen(
         "the motion leaves the range that the model was identified in, where its torques and band are "
         f"extrapolated: {listed(outside, _MOST_NAMED)}"
     )
+
+
+def on_one_turn(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
+    """Recordings of one arm whose continuous joints are on the turn that is nearest to the first recording's.
+
+    Whole turns are added to positions, so that the range of all recordings isn't wider than the motion.
+    """
+    middles = [(e.log.q.min(axis=0) + e.log.q.max(axis=0)) / 2 for e in evaluations]
+    found = []
+    for evaluation, middle in zip(evaluations, middles, strict=True):
+        turns = whole_turns(middles[0] - middle)
+        turns *= [kind == "continuous" for kind in evaluation.joint_types]
+        log = evaluation.log
+        if turns.any():
+            log = replace(log, q=log.q + turns)
+        found.append(replace(evaluation, log=log))
+    return found

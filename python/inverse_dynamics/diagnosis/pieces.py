@@ -25,8 +25,8 @@ _INFORMATIVE = 0.02  # of the greatest torque: less is lost in friction and nois
 
 
 @dataclass(frozen=True)
-class Samples:
-    """Samples of a motion: K pieces of M contiguous ones. (K, M) s; (K, M, n) rad, rad/s, rad/s^2, N m."""
+class Pieces:
+    """A motion: K pieces of M contiguous samples. (K, M) s; (K, M, n) rad, rad/s, rad/s^2, N m."""
 
     joints: tuple[str, ...]
     time: Floats
@@ -56,7 +56,7 @@ def pieces_of(
     motion: tuple[Floats, Floats, Floats],
     measured: Floats,
     kept: Mask | None = None,
-) -> Samples | None:
+) -> Pieces | None:
     """Four or more pieces, spread over a recording of N samples; None: it is too short.
 
     motion: q, qd, qdd; kept: (N,) valid ones.
@@ -71,14 +71,14 @@ def pieces_of(
     starts = np.linspace(0, count - length, min(_PIECES, count // length)).astype(np.int64)
     rows = valid[starts[:, None] + np.arange(length)]
     q, qd, qdd = (values[rows] for values in motion)
-    return Samples(tuple(joints), time[rows], q, qd, qdd, measured[rows])
+    return Pieces(tuple(joints), time[rows], q, qd, qdd, measured[rows])
 
 
 @dataclass(frozen=True)
 class View:
-    """Samples and arm, and what several rivals need. Arrays: (N, n)."""
+    """Pieces and arm, and what several rivals need. Arrays: (N, n)."""
 
-    samples: Samples
+    samples: Pieces
     arm: ArmModel
 
     @cached_property
