@@ -28,8 +28,8 @@ from inverse_dynamics.diagnosis.compare import (
     meaning_of_efforts,
     residual_causes,
 )
-from inverse_dynamics.diagnosis.rival import PAGE
 from inverse_dynamics.diagnosis.pieces import Pieces, pieces_of
+from inverse_dynamics.diagnosis.rival import PAGE
 from inverse_dynamics.payload.payload import PayloadError, _require_plausible
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import robot_of_description
