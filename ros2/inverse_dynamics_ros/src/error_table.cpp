@@ -35,12 +35,12 @@ double meanOf(const std::vector<JointMetrics>& errors, double JointMetrics::*fie
 // To the left the joint and its unit, to the right numbers; empty ones at the end are left out.
 std::string lineOf(std::size_t width, const std::string& joint, const std::string& unit,
                    const std::array<std::string, 6>& numbers) {
-  constexpr std::size_t kUnit = 4, kNumber = 9;
+  constexpr std::size_t kUnit = 4, kNumber = 8;
   const auto blanks = [](std::size_t all, const std::string& text) {
     return std::string(all - std::min(all, text.size()), ' ');
   };
   std::string line = "  " + joint + blanks(width, joint) + "  " + unit + blanks(kUnit, unit);
-  for (const std::string& number : numbers) line += blanks(kNumber, number) + number;
+  for (const std::string& number : numbers) line += " " + blanks(kNumber, number) + number;
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
 }

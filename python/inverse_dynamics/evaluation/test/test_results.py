@@ -11,6 +11,7 @@ from example_evaluations import make_evaluation
 from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
 from inverse_dynamics._core import Effort, Verdict
 from inverse_dynamics.errors import OutputError, UserError
+from inverse_dynamics.evaluation.evaluation import SCHEMA
 from inverse_dynamics.outputs import plain
 
 FILES = {
@@ -98,7 +99,7 @@ def test_metrics_say_what_they_are_of(result, evaluation):
     assert metrics["accelerations"]["cutoff"] == 3.25
     first = metrics["joints"][0]
     assert (first["joint"], first["unit"]) == ("joint_1", "N m")
-    for name in ("mae", "rmse", "nrmse", "bias", "r2"):
+    for name in ("mae", "rmse", "nrmse", "bias", "r2", "max_abs"):
         assert first[name] == getattr(evaluation.errors[0], name)
     assert metrics["mean_rmse"] == pytest.approx(evaluation.mean_rmse)
     assert metrics["kept"]["samples"] == 395
@@ -152,8 +153,8 @@ def test_an_incomplete_result_is_an_error(tmp_path, evaluation, file):
 def test_a_result_of_another_version_is_an_error(tmp_path, evaluation):
     write_evaluation(evaluation, tmp_path / "result", figures=())
     file = tmp_path / "result/evaluation.json"
-    file.write_text(file.read_text().replace('"schema": 4', '"schema": 7'))
-    with pytest.raises(OutputError, match="expected schema 4, got 7; evaluate again"):
+    file.write_text(file.read_text().replace(f'"schema": {SCHEMA}', '"schema": 70'))
+    with pytest.raises(OutputError, match=f"expected schema {SCHEMA}, got 70; evaluate again"):
         read_evaluation(tmp_path / "result")
 
 
