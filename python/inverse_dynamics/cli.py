@@ -2,9 +2,9 @@
 """The command `ids`: verbs, errors, exit codes.
 
 A verb NAME is a module verb_NAME.py in the folder of its feature, with PLACE and SUMMARY (its group, place in it,
-and line in the list of verbs), EPILOG (examples, a paragraph each), perhaps DESCRIPTION, `declare(options)` and
-`run(arguments)`, which imports what is heavy. Its line stands in docs/command_line.md. A package that is built on
-request brings its verb.
+and line in the list of verbs), EPILOG (examples, a paragraph each: `-h` shows those that fit), perhaps DESCRIPTION,
+`declare(options)` and `run(arguments)`, which imports what is heavy. Its line stands in docs/command_line.md. A
+package that is built on request brings its verb.
 Exit code 0: done; 2: something that the user can correct, named on stderr (without a verb: the help);
 3: some of several recordings failed, the others are done; 1: an unexpected error, with a report in a
 file; 128 + n: ended by signal n (141: the reader of the output has gone).
@@ -97,7 +97,8 @@ def _short_help(parser: argparse.ArgumentParser, examples: list[str]) -> list[st
     actions = [a for a in parser._actions if a.help is not argparse.SUPPRESS]
     positional = " ".join(f"{a.metavar or a.dest}" for a in actions if not a.option_strings)
     usage = parser.usage or " ".join(filter(None, (parser.prog, positional, "[options]")))
-    lines = [f"usage: {usage}", "", parser.description or "", "", *examples]
+    lines = [f"usage: {usage}", "", parser.description or ""]
+    lines += ["", *examples] if examples else []
     for group in parser._action_groups:
         options = [_usage(a) for a in group._group_actions if a.option_strings]
         if options:

@@ -67,7 +67,7 @@ def test_ids_python_and_cpp_give_the_same_bits(ids, run):
     assert [[joint[name] for name in FIGURES] for joint in metrics] == found
     errors = evaluate(run / "bag", robot).errors
     assert [[getattr(joint, name) for name in FIGURES] for joint in errors] == found
-    assert max(joint["rmse"] for joint in metrics) > 0.1  # something is wrong with the model, as made
+    assert max(joint["rmse"] for joint in metrics) > 0.1  # the model is wrong
 
     ours, theirs = rows(run / "ids" / "bag"), rows(run / "cpp")
     assert {topic for topic, _, _ in ours} == {"/torques", "/torques_gt"}
