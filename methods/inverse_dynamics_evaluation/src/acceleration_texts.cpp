@@ -44,7 +44,13 @@ void addFilterFindings(const FilterChoice& filter, std::vector<std::string>& fou
     found.push_back("the arm rests for " + formatted("%.3g", 100.0 * (1.0 - choice.moving)) +
                     " % of the time: the cut-off was chosen from the motion alone");
   }
-  if (choice.cutoff <= choice.lowest) {
+  if (choice.gain > 0) {
+    found.push_back("the cut-off, " + formatted("%.3g", choice.cutoff) +
+                    " Hz, was chosen by the efforts: computed torques explain them " +
+                    formatted("%.2g", 100.0 * choice.gain) + " % better than with " +
+                    formatted("%.3g", choice.by_motion) +
+                    " Hz, which positions and velocities alone suggest");
+  } else if (choice.cutoff <= choice.lowest) {
     found.push_back("the chosen cut-off, " + formatted("%.3g", choice.cutoff) +
                     " Hz, is the lowest possible: the data don't distinguish motion from noise");
   } else if (choice.cutoff >= choice.highest) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "checks.hpp"
+#include "effort_fit.hpp"
 #include "figures.hpp"
 #include "filtering.hpp"
 #include "spectrum.hpp"
@@ -467,6 +468,39 @@ void backwardDifferences(const ConstVector& time, const ConstColumns& qd, Column
   }
 }
 
+// Accelerations of the pieces' samples.
+void differentiate(SampleTable& table, const std::vector<Grid>& grids, double cutoff, int order) {
+  for (const Grid& grid : grids) {
+    requireFilter(1.0 / grid.period, cutoff, order);
+  }
+  Interpolation interpolation(table);
+  for (const Grid& grid : grids) {
+    const DerivativeRoom room(grid.count, 1.0 / grid.period, cutoff, order);
+    auto columns = table.scratch(table.q.rows(), room.size());
+    Resampler resampler(table, grid);
+    for (Index i = 0; i < grid.count; ++i) {
+      resampler.next();
+      columns.col(room.begin() + i) = resampler.valueOf(table.qd);
+    }
+    interpolation.add(grid, room.differentiate(columns));
+  }
+  interpolation.finish();
+}
+
+// The choice, with the cut-off that lets a robot's torques explain the efforts best.
+CutoffChoice choiceByEfforts(SampleTable& table, const std::vector<Grid>& grids,
+                             const LowPassOptions& options, const CutoffChoice& motion) {
+  const auto choose = [&](SampleTable& samples, const std::vector<Grid>& pieces) {
+    return EffortFit(samples, *options.solver).choose(motion, [&](double cutoff) {
+      differentiate(samples, pieces, cutoff, options.order);
+    });
+  };
+  const std::unique_ptr<SampleTable> excerpt = excerptOf(table);
+  if (excerpt == nullptr) return choose(table, grids);
+  const SampleReport found = examineSamples(*excerpt, options.rules);
+  return found.pieces.empty() ? motion : choose(*excerpt, gridsOf(found, options.rules));
+}
+
 FilterChoice filterOf(SampleTable& table, const SampleReport& found,
                       const LowPassOptions& options) {
   const std::vector<Grid> grids = gridsOf(found, options.rules);
@@ -480,21 +514,12 @@ FilterChoice filterOf(SampleTable& table, const SampleReport& found,
   filter.chosen = options.cutoff == 0;
   if (filter.chosen) {
     filter.choice = choiceOf(table, grids, filter.sampling_frequency, filter.order);
+    if (options.solver != nullptr && table.effort.size() > 0) {
+      filter.choice = choiceByEfforts(table, grids, options, filter.choice);
+    }
     filter.cutoff = filter.choice.cutoff;
   }
-  for (const Grid& grid : grids) requireFilter(1.0 / grid.period, filter.cutoff, filter.order);
-  Interpolation interpolation(table);
-  for (const Grid& grid : grids) {
-    const DerivativeRoom room(grid.count, 1.0 / grid.period, filter.cutoff, filter.order);
-    auto columns = table.scratch(table.q.rows(), room.size());
-    Resampler resampler(table, grid);
-    for (Index i = 0; i < grid.count; ++i) {
-      resampler.next();
-      columns.col(room.begin() + i) = resampler.valueOf(table.qd);
-    }
-    interpolation.add(grid, room.differentiate(columns));
-  }
-  interpolation.finish();
+  differentiate(table, grids, filter.cutoff, filter.order);
   return filter;
 }
 

@@ -25,6 +25,7 @@ constexpr double kOctave = 2.0;
 // of the power of the derivative of q, noise: above, q says little. Where stamps are irregular,
 // interpolation leaves a third of the noise at high frequencies.
 constexpr double kNoisy = 0.2;
+constexpr double kMotion = 0.99;    // of the power of the velocities is motion's
 constexpr double kCoherent = 0.25;  // qd has the noise of q, late by up to 60 degrees: cos^2
 
 // Share of white noise of q in the power of a joint's derivative of q; B. Its level is that of the
@@ -84,6 +85,21 @@ double leastError(const VelocitySpectra& spectra, const Eigen::ArrayXd& candidat
   return best;
 }
 
+// The frequency below which nearly all of the velocities' power lies, each joint with the same weight.
+double motionFrequency(const VelocitySpectra& spectra) {
+  Eigen::ArrayXd power = Eigen::ArrayXd::Zero(spectra.frequency.size());
+  for (Eigen::Index j = 0; j < spectra.total.cols(); ++j) {
+    const double all = spectra.total.col(j).sum();
+    if (all > 0) power += spectra.total.col(j) / all;
+  }
+  double below = 0;
+  for (Eigen::Index b = 0; b < power.size(); ++b) {
+    below += power[b];
+    if (below >= kMotion * power.sum()) return spectra.frequency[b];
+  }
+  return 0;
+}
+
 }  // namespace
 
 void requireLongEnough(Eigen::Index longest) {
@@ -109,6 +125,8 @@ CutoffChoice cutoffOf(const VelocitySpectra& spectra, double duration, double sa
   choice.cutoff = spectra.total.isZero(0)
                       ? choice.highest
                       : leastError(spectra, candidates, sampling_frequency, order);
+  choice.by_motion = choice.cutoff;
+  choice.motion = motionFrequency(spectra);
   return choice;
 }
 

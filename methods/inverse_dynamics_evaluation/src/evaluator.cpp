@@ -97,6 +97,7 @@ void prepare(Evaluation& result, const InverseDynamicsSolver& solver,
   LowPassOptions filter;
   filter.cutoff = options.cutoff;
   filter.rules = options.rules;
+  filter.solver = &solver;
   result.accelerations =
       named(options, [&] { return findAccelerations(table, options.method, filter); });
   result.notes = jumps;

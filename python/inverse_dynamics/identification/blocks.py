@@ -121,9 +121,8 @@ def _accelerations(evaluation: Evaluation, rows: slice) -> tuple[Floats, Floats]
         return evaluation.qdd[rows], time
     if how.method == "backward-difference":
         return _core.backward_difference(time, log.qd[rows]), time
-    cutoff = 0.0 if how.chosen else how.cutoff or 0.0  # zero: chosen from the block
     motion = time, log.q[rows], log.qd[rows], log.effort[rows]
-    return _core.low_pass_accelerations(*motion, cutoff)[:2]
+    return _core.low_pass_accelerations(*motion, how.cutoff or 0.0)[:2]
 
 
 def moving(blocks: Sequence[Block]) -> list[Block]:

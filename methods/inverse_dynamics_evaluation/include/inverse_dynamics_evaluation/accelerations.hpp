@@ -27,6 +27,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,8 @@ struct LowPassOptions {
   double cutoff = 0;  ///< Hz; 0: chosen from the data
   int order = 2;      ///< of the Butterworth filter that runs forwards and backwards
   SampleRules rules;  ///< faults of the samples to act on
+  /// Of the robot: recorded efforts choose the cut-off, too. Null: positions and velocities alone do.
+  const inverse_dynamics_solver::InverseDynamicsSolver* solver = nullptr;
 };
 
 /// Properties of a filter, printed and stored with its result.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// A cut-off for the low-pass before differentiation, chosen from positions and velocities alone.
+/// A cut-off for the low-pass before differentiation, chosen from the data.
 ///
 ///     const AccelerationReport found = findAccelerations(table, AccelerationMethod::kLowPass);
 ///     std::cout << found.filter.choice.cutoff << " Hz\n";
@@ -41,6 +41,17 @@
 /// One cut-off serves all joints: E is added over them. All of this is sums over segments of at most
 /// 60 s, gathered in one pass. docs/accuracy.md compares it with the best cut-off.
 ///
+/// Efforts. An elastic arm vibrates, at 20 to 80 Hz and above; q and qd share that vibration, so it is
+/// motion to them. The torques of rigid links don't have it, nor do the efforts. Where efforts were
+/// recorded, another cut-off is taken if it lets the solver's torques explain them better. Each joint's
+/// efforts are fitted by
+///
+///     a g(q) + b (C(q, qd) qd + friction) + c_k H_jk(q) qdd_k + d qd + e sign(qd) + f   (sum over k),
+///
+/// so that neither wrong masses, nor friction, nor an offset decides. Eight parts of the recording are
+/// left out in turn; the least mean error of what was left out wins, if it is less by more than one per
+/// cent and twice its standard error. No cut-off below twice the frequency of the motion is tried.
+///
 /// [Wiener 1949, Extrapolation, interpolation, and smoothing of stationary time series; Stone 1974,
 /// doi 10.1111/j.2517-6161.1974.tb00994.x; Bendat and Piersol, Random data, on cross-spectra]
 
@@ -55,6 +66,9 @@ struct CutoffChoice {
   double lowest = 0;   ///< lower bound: two periods in the recording, or 0.25 Hz
   double highest = 0;  ///< upper bound: 0.4 of the sampling frequency
   double moving = 0;   ///< share of the samples in motion, 0 to 1; the cut-off is chosen from them
+  double motion = 0;   ///< 99 % of the power of the velocities lies below
+  double by_motion = 0;  ///< what positions and velocities alone would choose
+  double gain = 0;  ///< share of the error of torques that efforts' choice saves; 0: it is the same
 };
 
 }  // namespace v2
