@@ -2,6 +2,7 @@
 
 // Accelerations in words.
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -34,6 +35,17 @@ std::string gapFinding(const SampleReport& samples, bool filtered) {
   return count + (samples.gaps.size() == 1 ? " gap" : " gaps") + " in the recording: " + place +
          (samples.gaps.size() == 1 ? "" : " (the longest)") +
          (filtered ? "; each side is filtered by itself" : "");
+}
+
+// Where the clock was set, and what follows.
+std::string clockFinding(const std::vector<ClockStep>& steps) {
+  const ClockStep& first = steps.front();
+  const std::string more =
+      steps.size() == 1 ? "" : ", the first of " + std::to_string(steps.size()) + " such steps";
+  return "the clock steps " + std::string(first.by < 0 ? "back" : "forward") + " by " +
+         formatted("%.3g", std::abs(first.by)) + " s before sample " +
+         std::to_string(first.sample + 1) + more +
+         ": times behind it are shifted, as if the clock had gone on";
 }
 
 // Limits of the choice of the cut-off.
@@ -92,9 +104,17 @@ std::vector<std::string> sampleFindings(const std::string& clock, const SampleRe
   const std::string of_all = " of " + std::to_string(counts.all) + " samples ";
   const std::string left_out = filter != nullptr ? " (left out of the differentiation)" : "";
   std::vector<std::string> found;
-  if (counts.repeated > 0) {
-    found.push_back(std::to_string(counts.repeated) + of_all + "repeat the one before" + left_out);
+  const SecondSource& other = samples.second_source;
+  if (counts.repeated > other.count) {
+    found.push_back(std::to_string(counts.repeated - other.count) + of_all +
+                    "repeat the one before" + left_out);
   }
+  if (other.count > 0) {
+    found.push_back(std::to_string(other.count) + of_all +
+                    "are of a second publisher, which stands still while the robot moves" +
+                    left_out + ": the first is sample " + std::to_string(other.first + 1));
+  }
+  if (!samples.clock_steps.empty()) found.push_back(clockFinding(samples.clock_steps));
   if (counts.non_increasing > 0) {
     const BackwardStamp& first = samples.backward;
     found.push_back(std::to_string(counts.non_increasing) + of_all + "have an equal or backward " +

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "inverse_dynamics_evaluation/error.hpp"
+#include "sources.hpp"
 #include "start_transient.hpp"
 
 namespace inverse_dynamics_evaluation {
@@ -29,7 +30,9 @@ using Eigen::VectorXd;
 constexpr double kNanosecond = 1e-9;
 constexpr double kJust = 1 + 1e-9;  // times a limit: rounding doesn't take a distance beyond it
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kGapPeriods = 10.0;    // a gap is longer than this many sampling periods
+constexpr double kGapPeriods = 10.0;  // a gap is longer than this many sampling periods
+constexpr double kBeyond =
+    1.1;  // times the longest gap that is bridged: behind a step of the clock
 constexpr double kClearlyBetter = 0.8;  // of the stamps' disagreement: then another time base
 constexpr double kNotWorse = 1.1;       // of the stamps' disagreement in the long run
 constexpr Index kLongIntervals = 50;    // over how many intervals time bases must agree too
@@ -46,13 +49,17 @@ bool repeats(const SampleTable::JointColumns& columns, Index k) {
 }
 
 // Rules 1 and 2.
-void markFaults(SampleTable& table) {
+void markFaults(SampleTable& table, const SampleRules& rules, SampleReport& report) {
   const bool efforts = table.effort.size() > 0;
-  double latest = table.time[0];
   for (Index k = 0; k < table.size(); ++k) {
     // a robot at rest may well say the same twice
     table.repeated[k] = k > 0 && repeats(table.q, k) && repeats(table.qd, k) &&
                         (!efforts || repeats(table.effort, k)) && !table.qd.col(k).isZero(0);
+  }
+  report.second_source = markSecondSource(table);
+  if (rules.non_increasing) report.clock_steps = undoClockSteps(table, kBeyond * rules.longest_gap);
+  double latest = table.time[0];
+  for (Index k = 0; k < table.size(); ++k) {
     table.non_increasing[k] = k > 0 && !(table.time[k] > latest);
     latest = std::max(latest, table.time[k]);
   }
@@ -394,6 +401,21 @@ void setInstants(SampleTable& table, const Timing& timing, const std::vector<Pie
   table.instant.tail(table.size() - known).setConstant(before);
 }
 
+constexpr double kStill = 0.05;  // of the way of all joints: a start transient holds no more of it
+
+// How many of the first samples the joints go no more than that share of their way in.
+Index standingStill(const SampleTable& table) {
+  const Index steps = table.size() - 1;
+  const auto way = [&](Index k) { return (table.q.col(k + 1) - table.q.col(k)).cwiseAbs().sum(); };
+  double whole = 0, gone = 0;
+  for (Index k = 0; k < steps; ++k) whole += way(k);
+  for (Index k = 0; k < steps; ++k) {
+    gone += way(k);
+    if (gone > kStill * whole) return k + 1;
+  }
+  return table.size();
+}
+
 // Rule 4: how many samples there are up to the end of a start transient.
 Index lookAtStart(const SampleTable& table, Index fresh, double period, const SampleRules& rules) {
   if (table.effort.size() == 0) return 0;
@@ -408,7 +430,8 @@ Index lookAtStart(const SampleTable& table, Index fresh, double period, const Sa
     instant[i] = table.instant[k];
     number.push_back(k);
   }
-  const Index end = startTransient(effort, instant, period, rules.start_window);
+  const double still = table.instant[standingStill(table) - 1] - instant[0];
+  const Index end = startTransient(effort, instant, period, std::min(rules.start_window, still));
   return end > 0 ? number[static_cast<std::size_t>(end - 1)] + 1 : 0;
 }
 
@@ -492,10 +515,10 @@ std::string name(TimeBase time_base) {
 }
 
 SampleReport examineSamples(SampleTable& table, const SampleRules& rules) {
-  markFaults(table);
+  SampleReport report;
+  markFaults(table, rules, report);
   const Census census = takeCensus(table, rules);
   std::vector<Base> bases = tryTimeBases(table, census, rules);
-  SampleReport report;
   report.backward = census.backward;
   report.lone = findLoneSample(table);
   const TimeBase fitting = chooseTimeBase(bases, report);

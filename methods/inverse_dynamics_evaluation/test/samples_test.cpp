@@ -274,6 +274,108 @@ TEST(ExamineSamples, SurvivesAFirstStampOfZero) {
   EXPECT_NEAR(report.period, 0.01, 1e-6);
 }
 
+TEST(ExamineSamples, TakesNoMotionForAStartTransient) {
+  // all of the motion is in the first half second, and efforts are rough while the arm moves
+  Motion motion = restingBut(1000.0, 10.0, 0.14, 0.28);
+  std::mt19937 generator(3);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  for (Eigen::Index k = 0; k < motion.count(); ++k) {
+    const double scale = motion.qd.col(k).isZero(0) ? 1.0 : 30.0;
+    for (double& effort : motion.effort.col(k)) effort = scale * noise(generator);
+  }
+  EXPECT_LT(examine(motion).start_transient.count(), 220);  // 0.08 s of motion at most
+}
+
+TEST(ExamineSamples, GoesOnWhereAClockWasSet) {
+  const Motion clean = sines(100.0, 20.0, {0.5, 1.0});
+  for (const double by : {-5.0, -0.05, 0.1}) {
+    Motion motion = clean;
+    motion.time.tail(1000).array() += by;
+    const Examined report = examine(motion);
+    ASSERT_EQ(report.clock_steps.size(), 1U) << by;
+    EXPECT_EQ(report.clock_steps[0].sample, 1001);
+    EXPECT_NEAR(report.clock_steps[0].by, by, 1e-6);
+    EXPECT_LT((report.time - clean.time).cwiseAbs().maxCoeff(), 1e-6) << by;
+    EXPECT_TRUE(report.kept.all()) << by;
+  }
+}
+
+TEST(ExamineSamples, CutsWhereAClockWasSetBackInAPause) {
+  const Motion clean = sines(100.0, 20.0, {0.5, 1.0});
+  std::vector<Eigen::Index> samples;
+  for (Eigen::Index k = 0; k < clean.count(); ++k) {
+    if (k < 1000 || k >= 1150) samples.push_back(k);
+  }
+  Eigen::VectorXd time(static_cast<Eigen::Index>(samples.size()));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    time[static_cast<Eigen::Index>(i)] =
+        0.01 * static_cast<double>(samples[i]) - (i < 1000 ? 0 : 4);
+  }
+  const Examined report = examine(pick(clean, samples, time));
+  EXPECT_EQ(report.clock_steps.size(), 1U);
+  EXPECT_THAT(report.pieces, piecesFrom({0, 1000}));
+  EXPECT_TRUE(report.kept.all());
+}
+
+TEST(ExamineSamples, TakesNoLateMessageForAClockThatWasSet) {
+  Motion motion = sines(100.0, 4.0, {0.5, 1.0});
+  motion.time[80] = motion.time[70];
+  motion.time[200] += 0.035;  // and those behind it arrive at once
+  motion.time[201] += 0.026;
+  motion.time[202] += 0.017;
+  motion.time[300] += 0.1;
+  EXPECT_TRUE(examine(motion).clock_steps.empty());
+}
+
+// Each sample followed by one of a publisher that says something else.
+template <class Other>
+Motion alternating(const Motion& motion, Other other) {
+  std::vector<Eigen::Index> samples;
+  Eigen::VectorXd time(2 * motion.count());
+  for (Eigen::Index k = 0; k < motion.count(); ++k) {
+    samples.insert(samples.end(), {k, k});
+    time.segment<2>(2 * k) << motion.time[k], motion.time[k] + 0.003;
+  }
+  Motion both = pick(motion, samples, time);
+  for (Eigen::Index k = 1; k < both.count(); k += 2) other(both, k);
+  return both;
+}
+
+TEST(ExamineSamples, LeavesOutASecondPublisherThatStandsStill) {
+  const Motion motion = sines(100.0, 10.0, {0.5, 1.0});
+  const auto still = [](Motion& both, Eigen::Index k) {
+    both.qd.col(k).setZero();
+    both.effort.col(k).setZero();
+  };
+  const auto at_start = [&](Motion& both, Eigen::Index k) {
+    both.q.col(k) = both.q.col(0);
+    both.qd.col(k).setZero();
+  };
+  for (const Motion& both : {alternating(motion, still), alternating(motion, at_start)}) {
+    const Examined report = examine(both);
+    EXPECT_EQ(report.second_source.count, motion.count());
+    EXPECT_EQ(report.second_source.first, 1);
+    for (Eigen::Index k = 0; k < both.count(); ++k) EXPECT_EQ(report.used[k], k % 2 == 0) << k;
+  }
+
+  Motion zeros = motion;
+  for (const Eigen::Index k : {120, 305, 700}) {
+    zeros.q.col(k).setZero();
+    zeros.qd.col(k).setZero();
+    zeros.effort.col(k).setZero();
+  }
+  EXPECT_EQ(examine(zeros).second_source.count, 3);
+}
+
+TEST(ExamineSamples, RefusesTwoPublishersThatMove) {
+  const Motion both = alternating(sines(100.0, 10.0, {0.5, 1.0}), [](Motion& all, Eigen::Index k) {
+    all.q.col(k) = -all.q.col(k).eval();
+    all.qd.col(k) = -all.qd.col(k).eval();
+  });
+  EXPECT_THAT(errorOf<EvaluationError>([&] { examine(both); }),
+              HasSubstr("samples: positions: expected those of one robot, got two sequences"));
+}
+
 TEST(ExamineSamples, RefusesWhatItCannotExamine) {
   const Motion motion = sines(100.0, 1.0, {0.5, 1.0});
   Motion bad = motion;

@@ -12,9 +12,11 @@
 ///
 /// 1. **Repeated samples.** q, qd and effort are, bit for bit, those of the sample before: the
 ///    recorder was faster than the robot, or a state was late. The velocity didn't stand still, so
-///    the repeat is left out of the differentiation.
-/// 2. **Stamps that don't increase.** A sample whose stamp isn't later than all before it is left
-///    out of the differentiation.
+///    the repeat is left out of the differentiation. So are samples of a second publisher that stands
+///    still among those of a robot that moves. Two publishers that both move are an error.
+/// 2. **Stamps that don't increase.** Where a clock was set, back or a little forward, the times behind
+///    it are shifted: one period goes by if positions and velocities confirm that, else a gap. Any other
+///    sample whose stamp isn't later than all before it is left out of the differentiation.
 /// 3. **Time base.** Stamps say when a message was written, which may be later than its sample by
 ///    a changing amount. Positions and velocities of the samples tell which time fits:
 ///
@@ -30,7 +32,8 @@
 ///    (divided ones, as samples may be missing), in units of their median, as a measure, everything
 ///    up to the last sample in the first half second that exceeds 5 times the 90 % quantile of the
 ///    first 65,536 samples doesn't count in the metrics over kept samples. Such samples are used in
-///    the differentiation.
+///    the differentiation. A start transient holds at most a twentieth of the way that the joints go:
+///    efforts of an arm that has begun to move are rougher than those of one that rests.
 /// 5. **Gaps.** Nothing was recorded for more than 10 sampling periods. Up to a quarter of a second,
 ///    in which an arm's motion hardly bends more than the cubic of findAccelerations(), they are
 ///    bridged; at longer ones the recording is cut, and each piece filtered by itself. Pieces too
@@ -99,6 +102,18 @@ struct LongestGap {
   std::int64_t stamp_before = 0;  ///< ns; of the sample before that one
 };
 
+/// Samples of a second publisher among those of the robot.
+struct SecondSource {
+  Eigen::Index count = 0;
+  Eigen::Index first = 0;  ///< number of the first one
+};
+
+/// Where a clock was set.
+struct ClockStep {
+  Eigen::Index sample = 0;  ///< number of the first sample behind it
+  double by = 0;            ///< s; negative: back
+};
+
 /// A sample of which a joint's position or velocity leaves its neighbours by more than all other
 /// samples together: by the squares of second differences. No motion does that.
 struct LoneSample {
@@ -124,6 +139,8 @@ struct SampleReport {
   std::vector<Eigen::Index> gaps;          ///< first used sample behind each gap that cuts (rule 5)
   LongestGap longest_gap;
   BackwardStamp backward;
+  SecondSource second_source;          ///< its samples count among the repeated ones
+  std::vector<ClockStep> clock_steps;  ///< that the table's time no longer has
   LoneSample lone;
 
   double period = 0;          ///< s; mean distance of the used samples, gaps aside
@@ -137,14 +154,14 @@ struct SampleReport {
   Eigen::Vector3d long_disagreement;  ///< the same over 50 intervals
 };
 
-/// Applies the rules above: fills the table's flags and instants. O(N).
+/// Applies the rules above: fills the table's flags and instants, takes steps of the clock out of its time. O(N).
 ///
 /// A repeat has the instant of the sample it repeats; one left out for its stamp lies between its
 /// neighbours in the recording. Without efforts, repeats are found by q and qd, and no start
 /// transient is looked for.
 ///
-/// @throws EvaluationError: fewer than 2 samples; stamps that don't increase where that rule is off,
-///         or for more than half of the samples.
+/// @throws EvaluationError: fewer than 2 samples; two publishers that both move; stamps that don't
+///         increase where that rule is off, or for more than half of the samples.
 SampleReport examineSamples(SampleTable& table, const SampleRules& rules = {});
 
 /// Makes positions of continuous joints go on where they jump by a turn from one sample to the next.

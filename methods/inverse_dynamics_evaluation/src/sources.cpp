@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "sources.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "inverse_dynamics_evaluation/error.hpp"
+
+namespace inverse_dynamics_evaluation {
+inline namespace v2 {
+namespace {
+
+using Eigen::Index;
+
+constexpr Index kLongestRun = 3;     // samples of the second source between two of the first
+constexpr double kMoves = 0.05;      // of a joint's greatest velocity
+constexpr double kJumps = 5.0;       // times the way between the samples around a jump
+constexpr Index kFewest = 3;         // samples that show how the second source looks
+constexpr double kLeastJump = 0.02;  // rad (prismatic m); of two sources that both move
+constexpr double kMostJumps = 0.1;   // of the samples
+constexpr Index kAhead = 10;         // samples in which stamps stay where a step took them
+constexpr double kStep = 1.5;        // periods; a shorter step is jitter
+constexpr double kForward = 3.0;  // periods; a shorter distance is jitter or a sample that was lost
+constexpr double kContradicts = 0.05;   // of the disagreement with the stamps, squared
+constexpr double kTypical = 9.0;        // times the typical disagreement, squared
+constexpr Index kMostIntervals = 4096;  // that tell what is typical
+
+bool standsStill(const SampleTable& table, Index k) { return table.qd.col(k).isZero(0); }
+
+bool lacksEfforts(const SampleTable& table, Index k) {
+  return table.effort.size() > 0 && table.effort.col(k).isZero(0);
+}
+
+// Whether some joint goes on in the same direction from sample `before` to `after`.
+bool goesOn(const SampleTable& table, const Eigen::ArrayXd& fastest, Index before, Index after) {
+  const auto a = table.qd.col(before).array(), b = table.qd.col(after).array();
+  return (a * b > 0 && a.abs().min(b.abs()) > kMoves * fastest).any();
+}
+
+// Whether the positions of sample k lie off the way from sample `before` to `after`.
+bool jumps(const SampleTable& table, Index before, Index k, Index after) {
+  const auto from = table.q.col(before), to = table.q.col(after);
+  return (table.q.col(k) - 0.5 * (from + to)).norm() > kJumps * (to - from).norm();
+}
+
+// Positions that go to and fro from sample to sample.
+void refuseTwoMotions(const SampleTable& table) {
+  Index count = 0, first = 0, all = 0, a = -1, b = -1;
+  for (Index k = 0; k < table.size(); ++k) {
+    if (table.repeated[k]) continue;
+    if (a >= 0) {
+      ++all;
+      const double out = (table.q.col(b) - table.q.col(a)).norm();
+      const double back = (table.q.col(k) - table.q.col(a)).norm();
+      if (out > kLeastJump && out > kJumps * back && count++ == 0) first = b;
+    }
+    a = b;
+    b = k;
+  }
+  if (static_cast<double>(count) <= kMostJumps * static_cast<double>(all)) return;
+  throw EvaluationError(
+      "samples", "positions", "those of one robot",
+      "two sequences of positions that alternate in " + std::to_string(count) + " of " +
+          std::to_string(table.size()) + " samples, first in sample " + std::to_string(first + 1) +
+          " (counted from 1)",
+      "two publishers use the same joint names: record one of them, or sort the samples");
+}
+
+// Median distance of stamps that increase; 0: there is none.
+double usualPeriod(const SampleTable& table) {
+  std::vector<double> distances;
+  const Index every = 1 + table.size() / kMostIntervals;
+  for (Index k = 1; k < table.size(); k += every) {
+    const double distance = table.time[k] - table.time[k - 1];
+    if (distance > 0) distances.push_back(distance);
+  }
+  if (distances.empty()) return 0;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+// Squared disagreement of positions with velocities over a duration [s].
+double disagreement(const SampleTable& table, Index before, Index k, double duration) {
+  return (table.q.col(k) - table.q.col(before) -
+          0.5 * duration * (table.qd.col(before) + table.qd.col(k)))
+      .squaredNorm();
+}
+
+double typicalDisagreement(const SampleTable& table, double period) {
+  std::vector<double> found;
+  const Index every = 1 + table.size() / kMostIntervals;
+  for (Index k = 1; k < table.size(); k += every) {
+    if (table.repeated[k] || table.repeated[k - 1]) continue;
+    found.push_back(disagreement(table, k - 1, k, period));
+  }
+  if (found.empty()) return 0;
+  const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
+  std::nth_element(found.begin(), middle, found.end());
+  return *middle;
+}
+
+}  // namespace
+
+SecondSource markSecondSource(SampleTable& table) {
+  const Index size = table.size();
+  const Eigen::ArrayXd fastest = table.qd.cwiseAbs().rowwise().maxCoeff();
+  std::vector<Index> found;
+  Index before = -1;  // the last sample in motion
+  for (Index k = 0; k < size; ++k) {
+    if (standsStill(table, k)) continue;
+    const Index run = k - before - 1;
+    if (before >= 0 && run > 0 && run <= kLongestRun && goesOn(table, fastest, before, k)) {
+      for (Index i = before + 1; i < k; ++i) {
+        const bool silent = lacksEfforts(table, i) && !lacksEfforts(table, before);
+        if (silent || jumps(table, before, i, k)) found.push_back(i);
+      }
+    }
+    before = k;
+  }
+  SecondSource other;
+  const auto mark = [&](Index k) {
+    if (other.count++ == 0) other.first = k;
+    table.repeated[k] = true;
+  };
+  if (static_cast<Index>(found.size()) < kFewest) {
+    for (const Index k : found) mark(k);
+  } else {
+    // the same source where the arm rests
+    const Index one = found.front();
+    const bool silent = lacksEfforts(table, one);
+    for (Index k = 0; k < size; ++k) {
+      const bool same = silent ? lacksEfforts(table, k) : table.q.col(k) == table.q.col(one);
+      if (standsStill(table, k) && same) mark(k);
+    }
+  }
+  refuseTwoMotions(table);
+  return other;
+}
+
+std::vector<ClockStep> undoClockSteps(SampleTable& table, double gap) {
+  std::vector<ClockStep> steps;
+  const double period = usualPeriod(table);
+  if (period == 0) return steps;
+  const double typical = typicalDisagreement(table, period);
+  // Whether the next samples, too, are on that side of where the period would take them.
+  const auto stays = [&](Index before, Index k, double from, double side) {
+    Index count = 0;
+    for (Index i = k; i < table.size() && count < kAhead; ++i) {
+      if (table.repeated[i]) continue;
+      ++count;
+      const double expected = from + static_cast<double>(i - before) * period;
+      if (side * (table.time[i] - expected) < kStep * period) return false;
+    }
+    return count > 1;
+  };
+  double offset = 0;
+  Index before = -1;   // the last sample that isn't late or early by itself
+  double stamped = 0;  // s; of that sample, as recorded
+  for (Index k = 0; k < table.size(); ++k) {
+    const double recorded = table.time[k], distance = recorded - stamped;
+    bool usual = !table.repeated[k];
+    if (usual && before >= 0 && !(distance > 0 && distance <= kForward * period)) {
+      const double by_stamps = disagreement(table, before, k, distance);
+      const double by_period = disagreement(table, before, k, period);
+      usual = stays(before, k, stamped, distance < 0 ? -1.0 : 1.0);
+      const bool contradicted =
+          distance <= gap && by_period < kContradicts * by_stamps && by_stamps > kTypical * typical;
+      if (usual && (distance < 0 || (distance > 0 && contradicted))) {
+        const bool confirmed = distance > 0 || by_period <= kTypical * typical;
+        const double length = confirmed ? period : std::max(gap, period);
+        steps.push_back({k, distance - length});
+        offset += length - distance;
+      }
+    }
+    if (usual) {
+      before = k;
+      stamped = recorded;
+    }
+    table.time[k] = recorded + offset;
+  }
+  return steps;
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_evaluation
