@@ -29,8 +29,9 @@ constexpr double kStep = 0.02;        // of the greatest velocity; width of the 
 constexpr double kRidge = 1e-9;       // of a term's power, where terms depend on one another
 constexpr double kRatio = 1.4142136;  // from one candidate to the next
 constexpr double kAbove = 4.0;  // times what positions and velocities choose: the highest candidate
-constexpr double kAboveMotion = 2.0;  // times the frequency of the motion: the lowest candidate
-constexpr double kLeastGain = 0.01;   // of the error
+constexpr double kAboveMotion = 2.0;   // times the frequency of the motion: the lowest candidate
+constexpr double kUnexplained = 0.01;  // of the efforts' deviation: a cut-off is worth a choice
+constexpr double kLeastGain = 0.01;    // of the error
 constexpr double kStandardErrors = 2.0;
 
 // Normal equations of a part.
@@ -145,6 +146,11 @@ CutoffChoice EffortFit::choose(CutoffChoice motion, const Differentiate& differe
         .rowwise()
         .mean();
   };
+  const VectorXd deviation =
+      ((effort_.colwise() - effort_.rowwise().mean()).rowwise().squaredNorm() /
+       static_cast<double>(q_.cols()))
+          .cwiseSqrt();
+  if (scale.sum() < kUnexplained * deviation.sum()) return motion;
   const Eigen::ArrayXd start = scored(before);
   const double lowest = std::max(motion.lowest, kAboveMotion * motion.motion);
   const double highest = std::min(motion.highest, kAbove * motion.by_motion);
@@ -152,9 +158,10 @@ CutoffChoice EffortFit::choose(CutoffChoice motion, const Differentiate& differe
     differentiate(cutoff);
     const Eigen::ArrayXd saved = start - scored(errors());
     const double gain = saved.mean() / start.mean();
-    const double deviation =
+    const double standard_error =
         std::sqrt((saved - saved.mean()).square().sum() / (kParts - 1) / kParts);
-    if (gain > std::max(motion.gain, kLeastGain) && saved.mean() > kStandardErrors * deviation) {
+    if (gain > std::max(motion.gain, kLeastGain) &&
+        saved.mean() > kStandardErrors * standard_error) {
       motion.gain = gain;
       motion.cutoff = cutoff;
     }
