@@ -392,13 +392,62 @@ def coupling(d: Draft, r: Random) -> Mistake:
     return Mistake("coupling", (d.arm.joints[j], d.arm.joints[j + 1]))
 
 
-WORLD = (ceiling, wall, tilt, no_gravity, payload, tool, mass, guided, friction, drift)
+def other_gravity(d: Draft, r: Random) -> Mistake:
+    """A simulator with another gravity."""
+    d.gravity = GRAVITY * r.choice([0.165, 0.38, 2.5])
+    return Mistake("gravity", value=d.gravity.tolist())
+
+
+def _turning(d: Draft, r: Random) -> int:
+    turning = np.flatnonzero(~d.arm.slides)
+    told = [j for j in d.informative if j in turning]
+    return int(r.choice(told or turning))
+
+
+def one_in_degrees(d: Draft, r: Random) -> Mistake:
+    """One joint in degrees."""
+    j = _turning(d, r)
+    d.scale(MOTION, np.where(np.arange(len(d.arm.joints)) == j, np.degrees(1), 1.0))
+    return Mistake("degrees")
+
+
+def twice_as_fast(d: Draft, _: Random) -> Mistake:
+    """Velocities of all joints are twice what they are."""
+    d.qd, d.qdd = 2 * d.qd, 2 * d.qdd
+    return Mistake("velocity")
+
+
+def external(d: Draft, r: Random) -> Mistake:
+    """External torques as efforts."""
+    span = np.maximum(np.ptp(d.effort, axis=0), 1e-3 * np.ptp(d.effort, axis=0).max())
+    walk = np.cumsum(r.normal(size=d.q.shape), axis=0)
+    walk /= np.maximum(np.abs(walk).max(axis=0), 1e-12)
+    d.effort = span * (
+        0.05 * walk + 0.02 * r.normal(size=d.q.shape) + 0.05 * r.uniform(-1, 1, len(span))
+    )
+    return Mistake("unrelated")
+
+
+WORLD = (
+    ceiling,
+    wall,
+    tilt,
+    no_gravity,
+    payload,
+    tool,
+    mass,
+    guided,
+    friction,
+    drift,
+    other_gravity,
+)
 RECORDED = (
     currents, common_scale, joint_scales, effort_sign, effort_direction, two_directions, direction, order,
     effort_order, degrees, velocity, clock, rates, motor_side, saturation, coupling,
+    one_in_degrees, twice_as_fast, external,
 )  # fmt: skip
 # Seen by positions and velocities, or by the shape of efforts, however small the error is.
-SEEN = (friction, guided, drift, degrees, velocity, clock, motor_side)
+SEEN = (friction, guided, drift, degrees, velocity, clock, motor_side, twice_as_fast, external)
 MOST_TRIES = 20
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.diagnosis.pieces import View
 
 _LENGTH = (8.0, 12.0)  # m/s^2 of gravity, with masses that are wrong by a fifth
+_MOST = 3.0  # times the model's gravity
 _ALONG, _ACROSS = 0.25, 0.15  # of gravity: masses off by a tenth leave less, across it next to none
 _LEAST_ANGLE = 4.0  # degrees: below it, flexible bases and wrong centers of mass look like a mount
 _MASS = (0.02, 1.0)  # of the arm's: less is within what makers know of it, no arm lifts more
@@ -27,6 +28,7 @@ _REACH = 1.0  # m between the tip and a load's center of mass
 _BESIDE = 0.02  # of the greatest torque of the load: in the last joint, if it is beside its axis
 _FACTORS = (0.01, 100.0)  # of a mass with a slip of the pen: a decimal, a unit
 _ROUGH = 0.25  # relative: of a maker's estimates
+_MOST_FACTOR = 12.0  # a decimal: beyond it, hardly a mass is wrong alone
 _LEAST_FACTOR = 1.8  # of a mass, either way: smaller ones are a maker's estimate
 
 
@@ -73,19 +75,19 @@ def rough(view: View) -> Rival:
 def _mount(own: Floats, change: Floats, _: Floats) -> Mistake | None:
     found = own + change
     length, size = float(np.linalg.norm(found)), float(np.linalg.norm(own))
-    if not _LENGTH[0] <= length <= _LENGTH[1]:
-        return None
-    direction = np.round(found * 9.81 / length, 2) + 0.0
-    cosine = float(direction @ own) / max(float(np.linalg.norm(direction)) * size, 1e-12)
+    cosine = float(found @ own) / max(length * size, 1e-12)
     angle = float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
-    if angle < _LEAST_ANGLE:
+    elsewhere = not _LENGTH[0] <= length <= _LENGTH[1]
+    if elsewhere != (angle < _LEAST_ANGLE) or length > _MOST * size:
         return None
+    direction = np.round(found if elsewhere else found * 9.81 / length, 2) + 0.0
     option = ",".join(f"{x:g}" for x in direction)
+    where = f"{angle:.0f}° from where the model has it"
     return Mistake(
         "gravity",
         "The robot hangs from the ceiling" if angle > 150 else "The robot hangs on a wall",
-        f"torques match if gravity acts along {option} m/s² in the frame of the root link, {angle:.0f}° from where "
-        "the model has it",
+        f"torques match if gravity acts along {option} m/s² in the frame of the root link, "
+        + (f"{printed(length / size, 2):g} times the model's" if elsewhere else where),
         f"give --gravity {option}, or `gravity:` in the run configuration",
         value=[float(x) for x in direction],
         shared=direction - own,
@@ -139,7 +141,7 @@ def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Mistake | None:
 
 def _mass(view: View, link: int, change: Floats, _: Floats) -> Mistake | None:
     factor = printed(1 + change[0], 2)
-    if max(factor, 1 / factor) < _LEAST_FACTOR:
+    if not _LEAST_FACTOR <= max(factor, 1 / factor) <= _MOST_FACTOR:
         return None
     name = view.arm.link_names[link] if view.arm.link_names else f"of joint {view.names[link]}"
     return Mistake(

@@ -54,7 +54,13 @@ _SCALES = {"currents", "effort_scale"}
 _OF_EFFORTS = {*_SCALES, "effort_sign", "effort_direction", "no_gravity", "gravity"}
 _LIKE_COUPLING = {*_SCALES, "mass"}  # of one joint, where the other's torque is like its own
 
-KINDS = (efforts.rivals, bodies.rivals, efforts.columns, motions.rivals, residuals.rivals)
+KINDS = (
+    efforts.rivals,
+    bodies.rivals,
+    efforts.columns,
+    motions.rivals,
+    residuals.rivals,
+)
 
 
 @dataclass(frozen=True)
@@ -181,11 +187,13 @@ def compare(samples: Pieces | None, arm: ArmModel) -> Diagnosis:
     """The causes of a mismatch; none where torques match, or samples are uninformative."""
     if samples is None or not samples.comparable:
         return Diagnosis()
-    found = motions.contradiction(samples, arm)
-    if found is None:
+    found = motions.contradictions(samples, arm)
+    if not found:
         return _Contest(View(samples, arm)).decide()
-    finding, right = found
-    contest = _Contest(View(right, arm))
+    # torques tell which correction is right, where more than one removes the contradiction
+    contests = [_Contest(View(right, arm)) for _, right in found]
+    best = min(range(len(found)), key=lambda i: contests[i].with_friction)
+    finding, contest = found[best][0], contests[best]
     rest = contest.decide()
     known = [cause.error_after for cause in rest.causes if cause.error_after is not None]
     after = min(known, default=contest.score(0))  # of friction alone
@@ -207,6 +215,11 @@ class _Contest:
         self.rivals: list[Rival] = []
         self.squares: list[Floats] = []
         self.remedies: dict[int, tuple[Mistake | None, float]] = {}  # by the number of the rival
+
+    @property
+    def with_friction(self) -> float:
+        """Error of the model, friction and offset fitted."""
+        return float(self.fit.mean(self.fit.errors(self.view.rival("friction"))))
 
     def decide(self) -> Diagnosis:
         """The outcome."""
@@ -246,7 +259,7 @@ class _Contest:
         own = residuals.of_joints(self.view, self.fit, self.squares[0])
         findings: tuple[Mistake, ...] = () if own is None else (own,)
         if not findings and before > _FITS:
-            findings = motions.beyond_reach(self.view) or efforts.too_small(self.view)
+            findings = motions.beyond_reach(self.view) or efforts.unlike(self.view)
         if findings:
             return Diagnosis(_causes([(one, None) for one in findings], self.as_is))
         if before > _FITS:
@@ -294,6 +307,13 @@ class _Contest:
             if finding and _small(after, least[finding.kind in _SCALES], finding):
                 tied.append(i)
                 result.append((finding, after))
+        # a clock that explains no more than a free scale for each joint, which is no mistake, isn't the cause
+        scales = [
+            i for i, r in enumerate(self.rivals) if r.kind == "scales" and not self.remedy(i)[0]
+        ]
+        by_clock = bool(tied) and self.rivals[tied[0]].kind == "clock"
+        if by_clock and any(self.alike(i, tied[0], _MARGIN) for i in scales):
+            return []
         rough = [i for i, rival in enumerate(self.rivals) if rival.kind == "rough"]
         static = bool(tied) and self.rivals[tied[0]].kind in _AT_REST
         margin = _ROUGH_MARGIN if static else _MARGIN

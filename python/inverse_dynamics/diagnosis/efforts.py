@@ -21,9 +21,12 @@ if TYPE_CHECKING:
 
 _SAME = 1.15  # ratio of scales that masses which a maker has rounded may give
 _NAMED = 0.06  # relative distance from a unit's scale that they may give
-_CURRENTS = (0.002, 1.0)  # A per N m behind the gears of arms
+_CURRENTS = (0.002, 0.5)  # A per N m behind the gears of arms
+_ALIKE = 12.0  # ratio of the greatest to the least gain of an arm's motors
 _TOO_SMALL = 0.3  # of the torques: more than what is ever wrong with masses
 _HEAVY = 0.2  # of the greatest torque
+_FOLLOWS = 0.5  # correlation of efforts with torques that they may be a share of
+_UNRELATED = 0.4  # correlation with any joint's torque up to which efforts are something else
 _UNITS = {  # per N m
     1000.0: "N mm",
     100.0: "N cm",
@@ -129,23 +132,56 @@ def _common(shared: Floats, _: Floats) -> Mistake | None:
     )
 
 
-def too_small(view: View) -> tuple[Mistake, ...]:
-    """Efforts that are far smaller than torques wherever those are large, whatever their shape."""
-    measured = np.quantile(np.abs(view.samples.flat(view.samples.measured)), 0.95, axis=0)
+def unlike(view: View) -> tuple[Mistake, ...]:
+    """Efforts that are far smaller than torques where those are large, and efforts that don't follow torques."""
+    efforts = view.samples.flat(view.samples.measured)
+    measured = np.quantile(np.abs(efforts), 0.95, axis=0)
     torque = np.quantile(np.abs(view.computed), 0.95, axis=0)
     heavy = torque > _HEAVY * torque.max()
+    if heavy.sum() < 2:
+        return ()
+    moving = view.computed - view.gravity
+    related = max(np.abs(_correlations(efforts, of)[heavy]).max() for of in (view.computed, moving))
+    if related < _UNRELATED:
+        return (_unrelated(view, heavy, float(related)),)
     share = measured[heavy] / torque[heavy]
-    if heavy.sum() < 2 or not 0 < np.max(share) <= _TOO_SMALL or view.arm.compared_without_gravity:
+    if not 0 < np.max(share) <= _TOO_SMALL or view.arm.compared_without_gravity:
         return ()
     least, most = 1 / np.max(share), 1 / np.maximum(np.min(share), 1e-6)
     factors = f"{printed(least, 2):g} to {printed(most, 2):g}"
     reason = f"efforts are {factors} times smaller than torques where those are large: "
-    currents = replace(_CURRENT, reason=f"{reason}they may be motor currents")
-    moving = np.quantile(np.abs(view.computed - view.gravity), 0.95, axis=0)
-    if (measured < _TOO_SMALL * moving)[heavy].any():
-        return (currents,)
-    reason += "the robot's driver may subtract gravity"
-    return currents, replace(_no_gravity(-1.0), reason=reason)
+    found: list[Mistake] = []
+
+    def follows(of: Floats) -> float:
+        return float(np.median(np.diag(_correlations(efforts, of))[heavy]))
+
+    if most <= _ALIKE * least and follows(view.computed) > _FOLLOWS:
+        found.append(replace(_CURRENT, reason=f"{reason}they may be motor currents"))
+    greatest = np.quantile(np.abs(moving), 0.95, axis=0)
+    rubs = max(follows(moving), follows(np.sign(view.qd))) > _UNRELATED  # what gravity leaves
+    if rubs and not (measured < _TOO_SMALL * greatest)[heavy].any():
+        reason += "the robot's driver may subtract gravity"
+        found.append(replace(_no_gravity(-1.0), reason=reason))
+    return tuple(found)
+
+
+def _correlations(a: Floats, b: Floats) -> Floats:
+    """(n, n) of the columns of two tables; 0 where one is constant."""
+    a, b = a - a.mean(axis=0), b - b.mean(axis=0)
+    size = np.sqrt(np.outer((a**2).sum(axis=0), (b**2).sum(axis=0)))
+    return np.asarray(a.T @ b / np.maximum(size, 1e-300))
+
+
+def _unrelated(view: View, heavy: Mask, correlation: float) -> Mistake:
+    return Mistake(
+        "unrelated",
+        "Efforts that don't follow the model",
+        f"efforts of {listed(view.samples.named(heavy))} don't follow the torques of the motion (correlation "
+        f"{correlation:.2g} at most): they may be external torques, friction where the driver subtracts gravity, or of "
+        "another motion",
+        "record the torques of the joints: of a Franka tau_J, not tau_ext_hat_filtered; of a KUKA the measured ones",
+        value=printed(correlation, 2),
+    )
 
 
 def _unit(scale: float) -> tuple[str, float]:
@@ -184,12 +220,20 @@ def _each(view: View, _: Floats, own: Floats) -> Mistake | None:
         unit, exact = _unit(float(np.median(scales[turning])))
         if unit and (np.abs(scales[turning] / exact - 1) < _NAMED).all():
             return _scales(view, off, np.where(view.prismatic, rounded, exact), f"in {unit}")
-    milli = "motor currents in mA" if _are_currents(scales[shown] / 1000) else ""
-    return _scales(view, off, rounded, milli)
+    if _are_currents(scales[shown] / 1000):
+        return _scales(view, off, rounded, "motor currents in mA")
+    # a free number for each joint is no mechanism; one for some of them is
+    others = shown & ~off
+    one = float(scales[off].max()) <= _SAME * float(scales[off].min())
+    if not one or not (np.abs(np.log(scales[others])) < np.log(_SAME)).all() or not others.any():
+        return None
+    return _scales(view, off, rounded, "")
 
 
 def _are_currents(scales: Floats) -> bool:
-    return bool(((scales > _CURRENTS[0]) & (scales < _CURRENTS[1])).all())
+    """Whether motors have such gains: in a range, and of one arm not too different."""
+    within = (scales > _CURRENTS[0]) & (scales < _CURRENTS[1])
+    return bool(within.all()) and float(scales.max()) <= _ALIKE * float(scales.min())
 
 
 def _scales(view: View, off: Mask, scales: Floats, what: str) -> Mistake:

@@ -38,8 +38,8 @@ _BEYOND = 1.2  # times the limit
 _CLOCK = 1.12  # least factor of time that efforts distinguish from wrong inertias
 
 
-def contradiction(samples: Pieces, arm: ArmModel) -> tuple[Mistake, Pieces] | None:
-    """A contradiction of velocities, positions and time, and the samples without it."""
+def contradictions(samples: Pieces, arm: ArmModel) -> list[tuple[Mistake, Pieces]]:
+    """Contradictions of velocities, positions and time that explain the same, and the samples without each."""
     way, integral, moves = _ways(samples)
     power = np.maximum((integral**2).sum(axis=0), 1e-300)
     rate = (way * integral).sum(axis=0) / power  # positions change so many times as fast
@@ -47,24 +47,27 @@ def contradiction(samples: Pieces, arm: ArmModel) -> tuple[Mistake, Pieces] | No
     follows = moves & (((way - rate * integral) ** 2).sum(axis=0) < _FOLLOWS * total)
     silent = moves & (power < 1e-6 * total)
     if silent.any():
-        return _velocity(samples, silent, 0.0, "zero"), _with_slopes(samples, silent)
+        return [(_velocity(samples, silent, 0.0, "zero"), _with_slopes(samples, silent))]
     wrong = follows & (np.abs(rate - 1) > _AGREE)
     if not wrong.any():
-        return None
+        return []
     prismatic = arm.of_type("prismatic", len(moves))
     turning = follows & ~prismatic
     usable = turning if turning.any() else follows
     middle = float(np.median(rate[usable]))
+    found = []
     if (np.abs(rate[usable] / middle - 1) < _SAME).all():
         everywhere = bool((wrong == follows).all())
-        found = _in_degrees(samples, prismatic, middle) if turning.any() else None
-        if found := found or _by_clock(samples, usable, middle, everywhere):
-            return found
+        in_degrees = _in_degrees(samples, prismatic, middle) if turning.any() else None
+        if in_degrees:
+            return [in_degrees]
+        if by_clock := _by_clock(samples, usable, middle, everywhere):
+            found.append(by_clock)
     factor = float(np.median(1 / rate[wrong]))
     reverse = (np.abs(rate[wrong] + 1) < _AGREE).all()
     text = "reversed" if reverse else f"{factor:.3g} times too fast"
     text = next((f"in {u}" for f, u in _RATES.items() if abs(factor / f - 1) < _SAME), text)
-    return _velocity(samples, wrong, factor, text), _with_slopes(samples, wrong)
+    return [*found, (_velocity(samples, wrong, factor, text), _with_slopes(samples, wrong))]
 
 
 def _ways(samples: Pieces) -> tuple[Floats, Floats, Mask]:
@@ -167,14 +170,18 @@ def beyond_limits(view: View) -> Mask:
 
 def rivals(view: View, _: Fitting) -> Iterator[Rival]:
     """Degrees, where positions are beyond limits; time that runs at another speed, by the efforts."""
-    if beyond_limits(view).any():
-        scale = np.where(view.prismatic, 1.0, 1 / _DEGREE)
-        q, qd, qdd = (scale * values for values in view.motion)
-        finding = _degrees(
-            "positions are beyond the joints' limits, and torques match if they are degrees",
-            view.prismatic,
-        )
-        yield view.rival("degrees", finding, base=view.arm.compared(q, qd, qdd), qd=qd)
+    beyond = beyond_limits(view)
+    if beyond.any():
+        for which in {tuple(~view.prismatic), tuple(beyond)}:
+            scale = np.where(which, 1 / _DEGREE, 1.0)
+            q, qd, qdd = (scale * values for values in view.motion)
+            names = view.samples.named(np.array(which))
+            some = "" if which == tuple(~view.prismatic) else f" of {listed(names)}"
+            finding = _degrees(
+                f"positions{some} are beyond the joints' limits, and torques match if they are degrees",
+                ~np.array(which),
+            )
+            yield view.rival("degrees", finding, base=view.arm.compared(q, qd, qdd), qd=qd)
     still = np.zeros_like(view.computed)
     if view.friction is not None:
         still = still + view.friction

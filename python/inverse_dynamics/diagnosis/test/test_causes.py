@@ -185,6 +185,18 @@ def drifting(j: int, samples: Pieces) -> Pieces:
     return replace(samples, measured=measured)
 
 
+def one_in_degrees(joint: int, samples: Pieces) -> Pieces:
+    scale = np.where(np.arange(samples.q.shape[-1]) == joint, np.degrees(1), 1.0)
+    q, qd, qdd = (scale * v for v in (samples.q, samples.qd, samples.qdd))
+    return replace(samples, q=q, qd=qd, qdd=qdd)
+
+
+def unrelated(samples: Pieces) -> Pieces:
+    random = np.random.default_rng(4)
+    walk = np.cumsum(np.cumsum(random.normal(size=samples.measured.shape), axis=1), axis=0)
+    return replace(samples, measured=0.02 * np.ptp(samples.measured) * walk / np.abs(walk).max())
+
+
 MISTAKES = [
     (partial(scaled, 1 / GAINS), "currents", ()),
     (partial(scaled, -1.0), "effort_sign", ()),
@@ -215,6 +227,9 @@ MISTAKES = [
     (partial(clipped, 2), "saturation", (2,)),
     (partial(coupled, 2, 1), "coupling", (2, 1)),
     (partial(drifting, 2), "drift", (2,)),
+    (partial(velocities, 2.0), "velocity", ()),
+    (partial(one_in_degrees, 1), "degrees", ()),
+    (unrelated, "unrelated", ()),
 ]
 
 

@@ -25,7 +25,7 @@ def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):
     code, out, err = ids("evaluate", bag, "--robot", "ur10_simulated", "--out", "result")
     assert (code, err) == (0, "")
     assert re.search(r"joint +unit +MAE +RMSE +NRMSE \[%\] +bias +R²", out)
-    assert re.search(r"elbow_joint +N m( +[-.e\d]+){5}$", out, re.MULTILINE)
+    assert re.search(r"elbow_joint +N m( +[-.e\d]+){5} *$", out, re.MULTILINE)
     assert re.search(r"mean +N m", out)
     assert "cut-off" in out
     assert re.search(r"page +result/report.html\nfigure +result/torques.png\n", out)
