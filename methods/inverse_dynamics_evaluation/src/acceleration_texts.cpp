@@ -110,9 +110,10 @@ std::vector<std::string> sampleFindings(const std::string& clock, const SampleRe
                     "repeat the one before" + left_out);
   }
   if (other.count > 0) {
-    found.push_back(std::to_string(other.count) + of_all +
-                    "are of a second publisher, which stands still while the robot moves" +
-                    left_out + ": the first is sample " + std::to_string(other.first + 1));
+    found.push_back(std::to_string(other.count) + of_all + "stand still between samples in motion" +
+                    left_out +
+                    ", as those of a second publisher or empty messages do: the first is sample " +
+                    std::to_string(other.first + 1));
   }
   if (!samples.clock_steps.empty()) found.push_back(clockFinding(samples.clock_steps));
   if (counts.non_increasing > 0) {

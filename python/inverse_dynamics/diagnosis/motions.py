@@ -34,6 +34,7 @@ _RATES = {  # velocity over slope of the positions
 }
 _CLOCKS = {1000.0: "ms", 1e6: "us", 1e9: "ns", 1e-3: "thousands of seconds", 60.0: "1/60 s"}
 _TURNS = 4 * np.pi  # rad: joints without limits seldom turn on
+_GAP = 5.0  # times the usual distance of samples: across a longer one, time may be wrong
 _BEYOND = 1.2  # times the limit
 _CLOCK = 1.12  # least factor of time that efforts distinguish from wrong inertias
 
@@ -73,7 +74,7 @@ def contradictions(samples: Pieces, arm: ArmModel) -> list[tuple[Mistake, Pieces
 def _ways(samples: Pieces) -> tuple[Floats, Floats, Mask]:
     """(K, n) by how much positions change in each piece, by how much velocities say; joints that move."""
     step = np.diff(samples.time, axis=1)[..., None]
-    whole = (step[..., 0] > 0).all(axis=1) & (step.max(axis=(1, 2)) < 20 * np.median(step))
+    whole = (step[..., 0] > 0).all(axis=1) & (step.max(axis=(1, 2)) < _GAP * np.median(step))
     integral = (0.5 * (samples.qd[:, 1:] + samples.qd[:, :-1]) * step).sum(axis=1)[whole]
     way = (samples.q[:, -1] - samples.q[:, 0])[whole]
     if not len(way):
