@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <limits>
 #include <memory>
@@ -20,6 +21,7 @@ using Eigen::ArrayXXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using Rows = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
 
 constexpr Index kParts = 8;           // each is left out once
 constexpr Index kInPart = 2048;       // samples at most: errors of neighbours are alike
@@ -105,9 +107,9 @@ ArrayXXd EffortFit::errors() const {
   ArrayXXd found(kParts, joints);
   MatrixXd terms(kTerms + joints, samples);
   for (Index j = 0; j < joints; ++j) {
-    // row j of each inertia matrix, which is symmetric
-    const Eigen::Map<const MatrixXd, 0, Eigen::OuterStride<>> inertia(
-        inertia_.data() + j * joints, joints, samples, Eigen::OuterStride<>(joints * joints));
+    // row j of each inertia matrix
+    const Eigen::Map<const MatrixXd, 0, Rows> inertia(inertia_.data() + j, joints, samples,
+                                                      Rows(joints * joints, joints));
     const double width = kStep * std::max(fastest_[j], std::numeric_limits<double>::min());
     terms.row(0) = gravity_.row(j);
     terms.row(1) = other_.row(j);

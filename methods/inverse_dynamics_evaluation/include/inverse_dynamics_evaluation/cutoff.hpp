@@ -50,7 +50,8 @@
 ///
 /// so that neither wrong masses, nor friction, nor an offset decides. Eight parts of the recording are
 /// left out in turn; the least mean error of what was left out wins, if it is less by more than one per
-/// cent and twice its standard error. No cut-off below twice the frequency of the motion is tried.
+/// cent and twice its standard error, and if E's cut-off leaves more than one per cent of the efforts
+/// unexplained. No cut-off below twice the frequency of the motion is tried.
 ///
 /// [Wiener 1949, Extrapolation, interpolation, and smoothing of stationary time series; Stone 1974,
 /// doi 10.1111/j.2517-6161.1974.tb00994.x; Bendat and Piersol, Random data, on cross-spectra]
