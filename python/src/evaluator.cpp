@@ -94,7 +94,7 @@ void bindErrors(py::module_& module) {
 struct Accelerations {
   std::string method;
   std::optional<double> cutoff;
-  bool chosen = false;
+  bool chosen = false, by_efforts = false;
   std::optional<int> order;
   std::string time_base = evaluation::name(evaluation::TimeBase::kStamps);
 };
@@ -106,6 +106,7 @@ Accelerations howOf(const Evaluated& evaluated) {
   if (evaluated.accelerations.method != evaluation::AccelerationMethod::kLowPass) return how;
   how.cutoff = filter.cutoff;
   how.chosen = filter.chosen;
+  how.by_efforts = filter.choice.gain > 0;
   how.order = filter.order;
   how.time_base = evaluation::name(filter.time_base);
   return how;
@@ -118,6 +119,8 @@ void bindHow(py::module_& module) {
       Field{"method", &A::method, "low-pass, given or backward-difference"},
       Field{"cutoff", &A::cutoff, "Hz; gain one half there"},
       Field{"chosen", &A::chosen, "whether the cut-off was chosen from the data"},
+      Field{"by_efforts", &A::by_efforts,
+            "whether efforts chose it, not positions and velocities alone"},
       Field{"order", &A::order, "of the Butterworth filter that runs both ways"},
       Field{"time_base", &A::time_base, "when samples were taken: stamps, regular, regular_fresh"})
       .def_property_readonly(

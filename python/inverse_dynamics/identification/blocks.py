@@ -122,7 +122,9 @@ def _accelerations(evaluation: Evaluation, rows: slice) -> tuple[Floats, Floats]
     if how.method == "backward-difference":
         return _core.backward_difference(time, log.qd[rows]), time
     motion = time, log.q[rows], log.qd[rows], log.effort[rows]
-    return _core.low_pass_accelerations(*motion, how.cutoff or 0.0)[:2]
+    # zero: chosen from the block's motion; where the arm vibrates, efforts of the recording have chosen
+    cutoff = 0.0 if how.chosen and not how.by_efforts else how.cutoff or 0.0
+    return _core.low_pass_accelerations(*motion, cutoff)[:2]
 
 
 def moving(blocks: Sequence[Block]) -> list[Block]:
