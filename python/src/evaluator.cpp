@@ -94,9 +94,10 @@ void bindErrors(py::module_& module) {
 struct Accelerations {
   std::string method;
   std::optional<double> cutoff;
-  bool chosen = false, by_efforts = false;
+  bool chosen = false;
   std::optional<int> order;
   std::string time_base = evaluation::name(evaluation::TimeBase::kStamps);
+  bool by_efforts = false;
 };
 
 Accelerations howOf(const Evaluated& evaluated) {
@@ -119,10 +120,10 @@ void bindHow(py::module_& module) {
       Field{"method", &A::method, "low-pass, given or backward-difference"},
       Field{"cutoff", &A::cutoff, "Hz; gain one half there"},
       Field{"chosen", &A::chosen, "whether the cut-off was chosen from the data"},
-      Field{"by_efforts", &A::by_efforts,
-            "whether efforts chose it, not positions and velocities alone"},
       Field{"order", &A::order, "of the Butterworth filter that runs both ways"},
-      Field{"time_base", &A::time_base, "when samples were taken: stamps, regular, regular_fresh"})
+      Field{"time_base", &A::time_base, "when samples were taken: stamps, regular, regular_fresh"},
+      Field{"by_efforts", &A::by_efforts,
+            "whether efforts chose the cut-off, not positions and velocities alone"})
       .def_property_readonly(
           "summary",
           [](const A& a) {

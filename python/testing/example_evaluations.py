@@ -41,7 +41,9 @@ def make_evaluation(
         log=log,
         joint_names=names,
         units=units,
-        accelerations=Accelerations("low-pass", 3.25, True, 2, "regular"),
+        accelerations=Accelerations(
+            "low-pass", cutoff=3.25, chosen=True, order=2, time_base="regular"
+        ),
         samples=SampleReport(no, no, ~kept, no, kept, 0.01, 0.0),
         time=log.time,
         qdd=np.sin(log.q),
