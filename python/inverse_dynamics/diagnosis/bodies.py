@@ -83,9 +83,10 @@ def _mount(own: Floats, change: Floats, _: Floats) -> Mistake | None:
     direction = np.round(found if elsewhere else found * 9.81 / length, 2) + 0.0
     option = ",".join(f"{x:g}" for x in direction)
     where = f"{angle:.0f}° from where the model has it"
+    mount = "The robot hangs from the ceiling" if angle > 150 else "The robot hangs on a wall"
     return Mistake(
         "gravity",
-        "The robot hangs from the ceiling" if angle > 150 else "The robot hangs on a wall",
+        "" if elsewhere else mount,
         f"torques match if gravity acts along {option} m/s² in the frame of the root link, "
         + (f"{printed(length / size, 2):g} times the model's" if elsewhere else where),
         f"give --gravity {option}, or `gravity:` in the run configuration",

@@ -54,13 +54,7 @@ _SCALES = {"currents", "effort_scale"}
 _OF_EFFORTS = {*_SCALES, "effort_sign", "effort_direction", "no_gravity", "gravity"}
 _LIKE_COUPLING = {*_SCALES, "mass"}  # of one joint, where the other's torque is like its own
 
-KINDS = (
-    efforts.rivals,
-    bodies.rivals,
-    efforts.columns,
-    motions.rivals,
-    residuals.rivals,
-)
+KINDS = (efforts.rivals, bodies.rivals, efforts.columns, motions.rivals, residuals.rivals)
 
 
 @dataclass(frozen=True)
@@ -69,7 +63,7 @@ class Cause:
 
     kind: currents, effort_scale, effort_sign, effort_direction, effort_order, no_gravity, gravity, payload, tool,
     mass, friction, guided, order, direction, degrees, velocity, clock, motor_side, saturation, coupling,
-    drift. mistake: the nearest heading of PAGE; "": none is near. value: what was found, of kind's unit.
+    drift, unrelated. mistake: the nearest heading of PAGE; "": none is near. value: what was found, of kind's unit.
     error_after: None where the remedy's numbers aren't known. rival: one of several of which one is right.
     """
 

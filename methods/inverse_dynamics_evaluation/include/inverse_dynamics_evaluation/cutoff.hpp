@@ -63,13 +63,14 @@ inline namespace v2 {
 
 /// The chosen cut-off and its bounds; Hz.
 struct CutoffChoice {
-  double cutoff = 0;   ///< minimizes E
+  double cutoff = 0;   ///< minimizes E, or is the efforts' choice
   double lowest = 0;   ///< lower bound: two periods in the recording, or 0.25 Hz
   double highest = 0;  ///< upper bound: 0.4 of the sampling frequency
   double moving = 0;   ///< share of the samples in motion, 0 to 1; the cut-off is chosen from them
   double motion = 0;   ///< 99 % of the power of the velocities lies below
-  double by_motion = 0;  ///< what positions and velocities alone would choose
-  double gain = 0;  ///< share of the error of torques that efforts' choice saves; 0: it is the same
+  double by_motion = 0;  ///< minimizes E
+  double gain =
+      0;  ///< share of the torques' error that the efforts' choice saves; 0: there is none
 };
 
 }  // namespace v2
