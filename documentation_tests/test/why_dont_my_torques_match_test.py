@@ -173,7 +173,7 @@ def test_a_slow_clock_exaggerates_inertia(results: Path) -> None:
 
 def test_bad_stamps_give_spikes_and_a_note(results: Path) -> None:
     e = read_evaluation(results / "stamps")
-    assert any("repeat the one before" in note for note in e.notes)
+    assert any("repeat an earlier one" in note for note in e.notes)
     roughness = [np.abs(np.diff(values[:, PAN])).max() for values in (e.computed, e.measured)]
     assert roughness[0] > 10 * roughness[1]
     mended = read_evaluation(results / "stamps_right")

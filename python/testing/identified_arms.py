@@ -106,7 +106,7 @@ def identification(recording: Path = Path("recording"), **changes: object) -> Id
         ),
         "levels": (),
         "findings": (Finding("prior", "masses of single links are the description's"),),
-        "notes": ("3 samples repeat the one before",),
+        "notes": ("3 samples repeat an earlier one",),
     }
     return Identification(**{**fields, **changes})
 

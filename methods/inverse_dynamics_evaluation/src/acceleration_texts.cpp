@@ -107,12 +107,12 @@ std::vector<std::string> sampleFindings(const std::string& clock, const SampleRe
   const SecondSource& other = samples.second_source;
   if (counts.repeated > other.count) {
     found.push_back(std::to_string(counts.repeated - other.count) + of_all +
-                    "repeat the one before" + left_out);
+                    "repeat an earlier one" + left_out);
   }
   if (other.count > 0) {
-    found.push_back(std::to_string(other.count) + of_all + "stand still between samples in motion" +
-                    left_out +
-                    ", as those of a second publisher or empty messages do: the first is sample " +
+    found.push_back(std::to_string(other.count) + of_all +
+                    "don't belong to the motion around them" + left_out +
+                    ", as those of a second publisher or empty messages: the first is sample " +
                     std::to_string(other.first + 1));
   }
   if (!samples.clock_steps.empty()) found.push_back(clockFinding(samples.clock_steps));

@@ -30,6 +30,7 @@ using Eigen::VectorXd;
 constexpr double kNanosecond = 1e-9;
 constexpr double kJust = 1 + 1e-9;  // times a limit: rounding doesn't take a distance beyond it
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Index kDelayed = 8;         // samples; a publisher that repeats another is no later
 constexpr double kGapPeriods = 10.0;  // a gap is longer than this many sampling periods
 constexpr double kBeyond =
     1.1;  // times the longest gap that is bridged: behind a step of the clock
@@ -42,10 +43,10 @@ double gapFrom(double longest_gap, double period) {
   return std::max(longest_gap, kGapPeriods * period);
 }
 
-// Whether a sample has the numbers of the one before, bit for bit.
-bool repeats(const SampleTable::JointColumns& columns, Index k) {
+// Whether a sample has the numbers of an earlier one, bit for bit.
+bool repeats(const SampleTable::JointColumns& columns, Index k, Index earlier) {
   const double* const numbers = columns.col(k).data();
-  return std::equal(numbers, numbers + columns.rows(), numbers - columns.rows());
+  return std::equal(numbers, numbers + columns.rows(), columns.col(earlier).data());
 }
 
 // Rules 1 and 2.
@@ -53,8 +54,13 @@ void markFaults(SampleTable& table, const SampleRules& rules, SampleReport& repo
   const bool efforts = table.effort.size() > 0;
   for (Index k = 0; k < table.size(); ++k) {
     // a robot at rest may well say the same twice
-    table.repeated[k] = k > 0 && repeats(table.q, k) && repeats(table.qd, k) &&
-                        (!efforts || repeats(table.effort, k)) && !table.qd.col(k).isZero(0);
+    const bool moves = !table.qd.col(k).isZero(0);
+    table.repeated[k] = false;
+    for (Index i = k - 1; moves && i >= std::max<Index>(k - kDelayed, 0); --i) {
+      if (!repeats(table.q, k, i) || !repeats(table.qd, k, i)) continue;
+      table.repeated[k] = !efforts || repeats(table.effort, k, i);
+      if (table.repeated[k]) break;
+    }
   }
   report.second_source = markSecondSource(table);
   if (rules.non_increasing) report.clock_steps = undoClockSteps(table, kBeyond * rules.longest_gap);
@@ -121,7 +127,7 @@ Index loneSample(const SampleTable::JointColumns& columns, Index j) {
 LoneSample findLoneSample(const SampleTable& table) {
   for (Index j = 0; j < table.q.rows(); ++j) {
     for (const SampleTable::JointColumns* columns : {&table.qd, &table.q}) {
-      if (const Index k = loneSample(*columns, j); k > 0) return {k, j, table.stamps()[k]};
+      if (const Index k = loneSample(*columns, j); k > 0 && !table.repeated[k]) return {k, j, table.stamps()[k]};
     }
   }
   return {};

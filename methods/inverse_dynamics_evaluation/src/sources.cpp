@@ -20,8 +20,8 @@ constexpr Index kLongestRun = 3;     // samples of the second source between two
 constexpr double kMoves = 0.05;      // of a joint's greatest velocity
 constexpr double kJumps = 5.0;       // times the way between the samples around a jump
 constexpr Index kFewest = 3;         // samples that show how the second source looks
-constexpr double kLeastJump = 0.02;  // rad (prismatic m); of two sources that both move
-constexpr double kMostJumps = 0.1;   // of the samples
+constexpr double kLeastJump = 0.02;  // rad (prismatic m); of a source that moves
+constexpr double kMostJumps = 0.1;   // of the samples; more are a second motion
 constexpr Index kAhead = 10;         // samples in which stamps stay where a step took them
 constexpr double kStep = 1.5;        // periods; a shorter step is jitter
 constexpr double kForward = 3.0;  // periods; a shorter distance is jitter or a sample that was lost
@@ -47,29 +47,6 @@ bool jumps(const SampleTable& table, Index before, Index k, Index after) {
   return (table.q.col(k) - 0.5 * (from + to)).norm() > kJumps * (to - from).norm();
 }
 
-// Positions that go to and fro from sample to sample.
-void refuseTwoMotions(const SampleTable& table) {
-  Index count = 0, first = 0, all = 0, a = -1, b = -1;
-  for (Index k = 0; k < table.size(); ++k) {
-    if (table.repeated[k]) continue;
-    if (a >= 0) {
-      ++all;
-      const double out = (table.q.col(b) - table.q.col(a)).norm();
-      const double back = (table.q.col(k) - table.q.col(a)).norm();
-      if (out > kLeastJump && out > kJumps * back && count++ == 0) first = b;
-    }
-    a = b;
-    b = k;
-  }
-  if (static_cast<double>(count) <= kMostJumps * static_cast<double>(all)) return;
-  throw EvaluationError(
-      "samples", "positions", "those of one robot",
-      "two sequences of positions that alternate in " + std::to_string(count) + " of " +
-          std::to_string(table.size()) + " samples, first in sample " + std::to_string(first + 1) +
-          " (counted from 1)",
-      "two publishers use the same joint names: record one of them, or sort the samples");
-}
-
 // Median distance of stamps that increase; 0: there is none.
 double usualPeriod(const SampleTable& table) {
   std::vector<double> distances;
@@ -82,6 +59,36 @@ double usualPeriod(const SampleTable& table) {
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
   return *middle;
+}
+
+// Samples whose positions leave the motion around them and return, in the order of the table.
+std::vector<Index> offTheWay(const SampleTable& table) {
+  const double period = usualPeriod(table);
+  // Farther than joints turn in the meantime.
+  const auto isFar = [&](Index from, Index to, Index periods, double distance) {
+    const double speed = std::max(table.qd.col(from).norm(), table.qd.col(to).norm());
+    return distance > std::max(kLeastJump, kJumps * speed * period * static_cast<double>(periods));
+  };
+  std::vector<Index> found, run;
+  Index before = -1;  // the last sample on the way
+  for (Index k = 0; k < table.size(); ++k) {
+    if (table.repeated[k]) continue;
+    const auto periods = static_cast<Index>(run.size()) + 1;
+    const double distance = before < 0 ? 0 : (table.q.col(k) - table.q.col(before)).norm();
+    if (before >= 0 && distance > kLeastJump && isFar(before, k, periods, distance)) {
+      run.push_back(k);
+      if (static_cast<Index>(run.size()) <= kLongestRun) continue;
+      k = run.front();  // the way goes on from there
+    } else {
+      for (const Index i : run) {
+        const double off = (table.q.col(i) - 0.5 * (table.q.col(before) + table.q.col(k))).norm();
+        if (off > kJumps * distance && isFar(before, k, periods, off)) found.push_back(i);
+      }
+    }
+    run.clear();
+    before = k;
+  }
+  return found;
 }
 
 // Squared disagreement of positions with velocities over a duration [s].
@@ -124,7 +131,7 @@ SecondSource markSecondSource(SampleTable& table) {
   }
   SecondSource other;
   const auto mark = [&](Index k) {
-    if (other.count++ == 0) other.first = k;
+    other.first = other.count++ == 0 ? k : std::min(other.first, k);
     table.repeated[k] = true;
   };
   if (static_cast<Index>(found.size()) < kFewest) {
@@ -138,7 +145,17 @@ SecondSource markSecondSource(SampleTable& table) {
       if (standsStill(table, k) && same) mark(k);
     }
   }
-  refuseTwoMotions(table);
+  const std::vector<Index> off = offTheWay(table);
+  const auto count = static_cast<double>(off.size());
+  if (count > kMostJumps * static_cast<double>(size - table.repeated.count())) {
+    throw EvaluationError(
+        "samples", "positions", "those of one robot",
+        "two sequences of positions that alternate in " + std::to_string(off.size()) + " of " +
+            std::to_string(size) + " samples, first in sample " + std::to_string(off.front() + 1) +
+            " (counted from 1)",
+        "two publishers use the same joint names: record one of them, or sort the samples");
+  }
+  for (const Index k : off) mark(k);
   return other;
 }
 

@@ -15,13 +15,14 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
-/// Marks the samples of a publisher that stands still, as a mock does, among those of one that moves.
+/// Marks the samples of a second publisher, or of messages that are empty or garbled.
 ///
 /// No arm's velocities are all exactly zero in one sample and not in the ones around it, in which joints go
 /// on in the same direction. It is a second source if its efforts are zero, too, or its positions jump there
-/// and back. The marks are those of repeats: such samples say nothing new.
+/// and back. A source that moves shows by positions that leave the motion around them, faster than velocities
+/// allow, and return. The marks are those of repeats: such samples say nothing new.
 ///
-/// @throws EvaluationError: positions go to and fro between two sequences that both move.
+/// @throws EvaluationError: one sample in ten belongs to a second source that moves.
 SecondSource markSecondSource(SampleTable& table);
 
 /// Shifts the times behind each step of the clock, so that time goes on.

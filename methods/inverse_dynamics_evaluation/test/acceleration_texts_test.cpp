@@ -82,13 +82,13 @@ TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
   const LogAccelerations found = logAccelerations(log);
   EXPECT_THAT(
       found.findings,
-      Contains("1 of 1000 samples repeat the one before (left out of the differentiation)"));
+      Contains("1 of 1000 samples repeat an earlier one (left out of the differentiation)"));
   EXPECT_THAT(found.findings,
               Contains("1 of 1000 samples have an equal or backward header stamp (left out of the "
                        "differentiation): the first is sample 701 at 6.989000000 s after "
                        "6.990000000 s"));
   EXPECT_THAT(logAccelerations(log, AccelerationMethod::kBackwardDifference).findings,
-              Contains("1 of 1000 samples repeat the one before"));
+              Contains("1 of 1000 samples repeat an earlier one"));
 }
 
 TEST(LogAccelerations, SayThatThereIsAGap) {

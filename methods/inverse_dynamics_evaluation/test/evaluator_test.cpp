@@ -127,7 +127,7 @@ TEST(Evaluate, LeavesSamplesOutOfTheSecondMetricsAlone) {
   const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(kTorque));
   EXPECT_EQ(evaluation.errors[0].count, 2000);
   EXPECT_EQ(evaluation.errors_of_kept[0].count, 1801);
-  EXPECT_THAT(evaluation.notes, Contains(HasSubstr("199 of 2000 samples repeat the one before")));
+  EXPECT_THAT(evaluation.notes, Contains(HasSubstr("199 of 2000 samples repeat an earlier one")));
 }
 
 TEST(Evaluate, TakesCurrentsTimesDriveGains) {

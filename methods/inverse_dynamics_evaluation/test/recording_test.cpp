@@ -180,6 +180,17 @@ TEST_P(RecordingTest, GivesMessagesInTheOrderOfReceptionAndEqualTimesAsWritten) 
   }
 }
 
+TEST_P(RecordingTest, GivesMessagesAsStoredWhereTheRecordersClockWasSetBack) {
+  for (const std::size_t count : {200U, 30'000U}) {  // within a chunk and over several
+    Stamps received = evenly(count);
+    for (std::size_t k = count / 2; k < count; ++k) {
+      received[k] -= static_cast<std::int64_t>(count) * 400'000;
+    }
+    const std::string bag = write("bag_" + std::to_string(count), received);
+    EXPECT_EQ(rest(*Recording(bag).jointStates()).receive_stamps, received);
+  }
+}
+
 TEST_P(RecordingTest, TellsTopicsApart) {
   const std::string bag = write("bag", evenly(3000), {"/torques", "/torques_gt"});
   const Recording recording(bag);
@@ -197,6 +208,29 @@ TEST_P(RecordingTest, TellsTopicsApart) {
   for (std::size_t k = 0; k < topics.size(); ++k) {
     ASSERT_EQ(topics[k], k % 2 == 0 ? "/torques" : "/torques_gt");
   }
+}
+
+TEST_P(RecordingTest, ReadsFilesWithoutMetadataInTheOrderOfTheirNumbers) {
+  const Stamps all = evenly(1200);
+  fs::create_directory(directory_ / "run");
+  const std::string kind = file("bag").extension();
+  for (int i = 0; i < 12; ++i) {
+    const std::string part = "part" + std::to_string(i);
+    write(part, Stamps(all.begin() + 100 * i, all.begin() + 100 * (i + 1)));
+    fs::rename(file(part), directory_ / "run" / ("run_" + std::to_string(i) + kind));
+  }
+  const std::string run = directory_ / "run";
+  const auto source = Recording(run).jointStates();
+  EXPECT_EQ(source->expectedMessages(), 1200);
+  EXPECT_EQ(rest(*source).receive_stamps, all);
+  EXPECT_THAT(source->note(), HasSubstr("metadata.yaml is missing: 12 files found in " + run));
+
+  const auto alone = Recording(run + "/run_3" + kind).jointStates();
+  EXPECT_EQ(rest(*alone).size(), 100U);
+  EXPECT_THAT(alone->note(), HasSubstr("is one of 12 files of a recording, and read alone; give " + run));
+
+  fs::rename(run + "/run_3" + kind, run + "/other" + kind);
+  EXPECT_THAT(errorOfReading(run), HasSubstr("has no metadata.yaml; give one of its files"));
 }
 
 TEST_P(RecordingTest, ReadsFilesOfASplitRecordingOneAfterAnother) {

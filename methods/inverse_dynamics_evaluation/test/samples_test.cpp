@@ -367,6 +367,36 @@ TEST(ExamineSamples, LeavesOutASecondPublisherThatStandsStill) {
   EXPECT_EQ(examine(zeros).second_source.count, 3);
 }
 
+TEST(ExamineSamples, LeavesOutASampleNowAndThenOfAnotherMotion) {
+  const Motion motion = sines(100.0, 10.0, {0.5, 1.0});
+  Motion garbled = motion;
+  const std::vector<Eigen::Index> places = {120, 305, 306, 700};
+  for (const Eigen::Index k : places) {
+    garbled.q.col(k).array() += 0.8;
+    garbled.qd.col(k).array() *= -0.5;
+  }
+  const Examined report = examine(garbled);
+  EXPECT_EQ(report.second_source.count, 4);
+  EXPECT_EQ(report.second_source.first, 120);
+  for (const Eigen::Index k : places) EXPECT_FALSE(report.used[k]) << k;
+  EXPECT_EQ(report.used.count(), motion.count() - 4);
+
+  // a fast motion at a low rate
+  EXPECT_EQ(examine(sines(12.0, 20.0, {2.0, 3.0})).second_source.count, 0);
+}
+
+TEST(ExamineSamples, LeavesOutAPublisherThatRepeatsAnotherLater) {
+  const Motion motion = sines(100.0, 10.0, {0.5, 1.0});
+  const Motion both = alternating(motion, [&](Motion& all, Eigen::Index k) {
+    if (k < 6) return;
+    all.q.col(k) = all.q.col(k - 5).eval();
+    all.qd.col(k) = all.qd.col(k - 5).eval();
+    all.effort.col(k) = all.effort.col(k - 5).eval();
+  });
+  const Examined report = examine(both);
+  for (Eigen::Index k = 0; k < both.count(); ++k) EXPECT_EQ(report.used[k], k % 2 == 0) << k;
+}
+
 TEST(ExamineSamples, RefusesTwoPublishersThatMove) {
   const Motion both = alternating(sines(100.0, 10.0, {0.5, 1.0}), [](Motion& all, Eigen::Index k) {
     all.q.col(k) = -all.q.col(k).eval();

@@ -178,8 +178,13 @@ class JointStateDecoder {
 class JointStates : public JointStateSource {
  public:
   /// @param where  for texts. @param expected  how many messages the recording states.
-  JointStates(std::unique_ptr<MessageSource> messages, std::string where, std::int64_t expected)
-      : messages_(std::move(messages)), where_(std::move(where)), expected_(expected) {}
+  /// @param note  what users should know of the recording.
+  JointStates(std::unique_ptr<MessageSource> messages, std::string where, std::int64_t expected,
+              std::string note = "")
+      : messages_(std::move(messages)),
+        where_(std::move(where)),
+        note_(std::move(note)),
+        expected_(expected) {}
 
   bool next(JointSample& sample) override {
     Message message;
@@ -205,10 +210,11 @@ class JointStates : public JointStateSource {
 
   std::int64_t expectedMessages() const override { return expected_; }
   std::string where() const override { return where_; }
+  std::string note() const override { return note_; }
 
  private:
   std::unique_ptr<MessageSource> messages_;
-  std::string where_;
+  std::string where_, note_;
   std::int64_t expected_, done_ = 0;
   JointStateDecoder decoder_;
 };

@@ -4,7 +4,8 @@
 /// MCAP files [https://mcap.dev/spec], as far as rosbag2 writes them: messages in chunks, or one
 /// after another.
 ///
-/// Chunks are opened when their time has come, and chunks that overlap in time are merged. A file
+/// Chunks are opened when their time has come, and chunks that overlap in time are merged, unless the
+/// recorder's clock was set back. A file
 /// without an index of its chunks is read once for it; messages outside of chunks are taken by the
 /// megabyte, as if these were chunks.
 
@@ -70,7 +71,7 @@ Entry entryOf(Fields fields) {
   return entry;
 }
 
-// A chunk in memory, with its messages in the order of reception.
+// A chunk in memory, with its messages in their order.
 struct Chunk {
   Bytes memory;
   std::vector<Entry> entries;
@@ -93,8 +94,6 @@ class McapReader : public StorageReader {
     if (summary_ != 0) readSummary();
     const bool has_index = !chunks_.empty() || (counted_ && counts_.empty());
     if (schemas_.empty() || connections_.empty() || !counted_ || !has_index) scan();
-    std::stable_sort(chunks_.begin(), chunks_.end(),
-                     [](const auto& a, const auto& b) { return a.begin_time < b.begin_time; });
   }
 
   void countMessages() override {
@@ -112,11 +111,16 @@ class McapReader : public StorageReader {
     wanted_ = wanted;
     next_chunk_ = 0;
     open_.clear();
+    steps_ = clockWasSet();
+    std::stable_sort(chunks_.begin(), chunks_.end(), [&](const auto& a, const auto& b) {
+      return steps_ ? a.offset < b.offset : a.begin_time < b.begin_time;
+    });
   }
 
   bool next(Message& message) override {
     while (next_chunk_ < chunks_.size() &&
-           (open_.empty() || chunks_[next_chunk_].begin_time <= open_.front()->time())) {
+           (open_.empty() ||
+            (!steps_ && chunks_[next_chunk_].begin_time <= open_.front()->time()))) {
       const ChunkIndex& chunk = chunks_[next_chunk_++];
       if (isWanted(chunk)) openChunk(chunk);
     }
@@ -347,26 +351,57 @@ class McapReader : public StorageReader {
     return unpackChunk(memory);
   }
 
-  void openChunk(const ChunkIndex& index) {
-    auto chunk = spent_ ? std::move(spent_) : std::make_unique<Chunk>();
-    chunk->entries.clear();
-    chunk->next = 0;
-    chunk->place = index.offset;
-    for (Fields records = readChunk(index, chunk->memory); records.left() > 0;) {
+  static bool showStep(const std::vector<Entry>& entries) {
+    StoredTimes stored;
+    for (const Entry& entry : entries) stored.add(static_cast<std::int64_t>(entry.time));
+    return stored.showStep();
+  }
+
+  // Whether chunks overlap because the recorder's clock was set back.
+  bool clockWasSet() {
+    std::sort(chunks_.begin(), chunks_.end(),
+              [](const auto& a, const auto& b) { return a.offset < b.offset; });
+    const bool overlap = std::adjacent_find(chunks_.begin(), chunks_.end(),
+                                            [](const auto& a, const auto& b) {
+                                              return b.begin_time < a.end_time;
+                                            }) != chunks_.end();
+    if (!overlap) return false;
+    Chunk chunk;
+    StoredTimes stored;
+    for (const ChunkIndex& index : chunks_) {
+      if (!isWanted(index)) continue;
+      readEntries(index, chunk);
+      for (const Entry& entry : chunk.entries) stored.add(static_cast<std::int64_t>(entry.time));
+    }
+    return stored.showStep();
+  }
+
+  // Those that are wanted, as stored.
+  void readEntries(const ChunkIndex& index, Chunk& chunk) {
+    chunk.entries.clear();
+    for (Fields records = readChunk(index, chunk.memory); records.left() > 0;) {
       const Record record = nextRecord(records);
       if (record.kind != kMcapMessage) continue;
       const Entry entry = entryOf(record.content);
       if (entry.time >= index.begin_time && entry.time <= index.end_time &&
           isWanted(entry.channel)) {
-        chunk->entries.push_back(entry);
+        chunk.entries.push_back(entry);
       }
     }
+  }
+
+  void openChunk(const ChunkIndex& index) {
+    auto chunk = spent_ ? std::move(spent_) : std::make_unique<Chunk>();
+    chunk->next = 0;
+    chunk->place = index.offset;
+    readEntries(index, *chunk);
     if (chunk->entries.empty()) {
       spent_ = std::move(chunk);
       return;
     }
     const auto earlier = [](const Entry& a, const Entry& b) { return a.time < b.time; };
-    if (!std::is_sorted(chunk->entries.begin(), chunk->entries.end(), earlier)) {
+    if (!steps_ && !std::is_sorted(chunk->entries.begin(), chunk->entries.end(), earlier) &&
+        !showStep(chunk->entries)) {
       std::stable_sort(chunk->entries.begin(), chunk->entries.end(), earlier);
     }
     open_.push_back(std::move(chunk));
@@ -399,10 +434,11 @@ class McapReader : public StorageReader {
   std::unordered_map<std::uint16_t, std::size_t> connection_of_;  // of a channel
   std::unordered_map<std::uint16_t, std::uint64_t> counts_;       // of messages of a channel
   bool counted_ = false;                                          // whether counts_ is known
-  std::vector<ChunkIndex> chunks_;                                // by time, then by place
+  std::vector<ChunkIndex> chunks_;                                // by time, then by place, or by place
   ZstdUnpacker zstd_;
 
   std::vector<bool> wanted_;
+  bool steps_ = false;  // the recorder's clock was set back: messages are taken as stored
   std::size_t next_chunk_ = 0;
   std::vector<std::unique_ptr<Chunk>> open_;  // a heap: the next message is in the first
   std::unique_ptr<Chunk> spent_;              // holds the message given last, then memory

@@ -230,7 +230,8 @@ class MergedJointStates : public JointStateSource {
   std::string where() const override { return where_; }
 
   std::string note() const override {
-    std::string text = "joint states are merged:";
+    std::string text = parts_.front().source().note();
+    text += (text.empty() ? "" : "; ") + std::string("joint states are merged:");
     for (const Part& part : parts_) {
       text += (&part == &parts_.front() ? " " : "; ") + part.content() + " from " + part.topic() +
               (&part == &parts_.front() ? ", at its times"

@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Place { kDirectory, kSqliteFile, kMcapFile };
+enum class Place { kDirectory, kParts, kFile };
 
 // The first byte of a file; 0 of an empty one, or where there is none.
 char firstByte(const std::string& file) {
@@ -56,12 +56,55 @@ void requireComplete(const std::string& file) {
   }
 }
 
-// A directory without metadata.yaml.
+// The file of a recording, in storage that can be read.
+bool isStorage(const fs::path& file) {
+  return file.extension() == ".db3" || file.extension() == ".mcap";
+}
+
+// A recorder that splits its recording numbers the files: `run_0.mcap`, `run_1.mcap`.
+struct NumberedFile {
+  std::string recording;  // name without the number; empty: there is none
+  std::uint64_t number = 0;
+};
+
+NumberedFile numbered(const fs::path& file) {
+  constexpr std::size_t kMostDigits = 9;
+  const std::string stem = file.stem();
+  const std::size_t line = stem.find_last_of('_');
+  if (line == std::string::npos || stem.size() - line - 1 > kMostDigits) return {};
+  const std::string digits = stem.substr(line + 1);
+  if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return {};
+  return {stem.substr(0, line) + file.extension().string(), std::stoull(digits)};
+}
+
+// Puts the files of a split recording into the order of their numbers. False: they are called otherwise.
+bool sortParts(std::vector<std::string>& files) {
+  const std::string recording = files.empty() ? "" : numbered(files.front()).recording;
+  for (const std::string& file : files) {
+    if (recording.empty() || numbered(file).recording != recording) return false;
+  }
+  std::sort(files.begin(), files.end(), [](const std::string& a, const std::string& b) {
+    return numbered(a).number < numbered(b).number;
+  });
+  return true;
+}
+
+// Files in a directory that has no metadata.yaml: those of one recording, in order, or none.
+std::vector<std::string> partsIn(const std::string& path) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    if (isStorage(entry.path())) files.push_back(entry.path());
+  }
+  if (files.size() != 1 && !sortParts(files)) files.clear();
+  return files;
+}
+
+// A directory without metadata.yaml and without files of one recording.
 [[noreturn]] void refuseDirectory(const std::string& path) {
   std::vector<std::string> files, inside;
   for (const auto& entry : fs::directory_iterator(path)) {
     const fs::path& there = entry.path();
-    if (there.extension() == ".db3" || there.extension() == ".mcap") files.push_back(there);
+    if (isStorage(there)) files.push_back(there);
     std::error_code error;
     if (fs::exists(there / "metadata.yaml", error)) inside.push_back(there);
   }
@@ -69,7 +112,8 @@ void requireComplete(const std::string& file) {
   std::sort(inside.begin(), inside.end());
   std::string remedy = "is it another directory?";
   if (!files.empty()) {
-    remedy = "give " + files.front() + " itself, or run `ros2 bag reindex " + path + "`";
+    remedy = "give one of its files, such as " + files.front() +
+             "; those of one recording are called NAME_0.mcap, NAME_1.mcap";
   } else if (inside.size() == 1) {
     remedy = "a recording is in it: give " + inside.front();
   } else if (!inside.empty()) {
@@ -77,6 +121,22 @@ void requireComplete(const std::string& file) {
     for (std::size_t i = 1; i < inside.size(); ++i) remedy += ", " + inside[i];
   }
   throw RecordingError(path + ": is not a rosbag2 recording: it has no metadata.yaml; " + remedy);
+}
+
+// What is said of a file of a split recording that is read alone; or nothing.
+std::string partNote(const std::string& path) {
+  const fs::path file(path);
+  const std::string recording = numbered(file).recording;
+  const fs::path directory = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  std::size_t others = 0;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error)) {
+    const bool other = entry.path().filename() != file.filename();
+    others += other && !recording.empty() && numbered(entry.path()).recording == recording ? 1 : 0;
+  }
+  if (others == 0) return "";
+  return file.filename().string() + " is one of " + std::to_string(others + 1) +
+         " files of a recording, and read alone; give " + directory.string() + " to read all";
 }
 
 // What a path is.
@@ -89,8 +149,9 @@ Place placeOf(const std::string& path) {
                          "with metadata.yaml, or a .db3 or .mcap file), or a table (.csv or .txt)");
   }
   if (fs::is_directory(status)) {
-    if (!fs::exists(path + "/metadata.yaml", error)) refuseDirectory(path);
-    return Place::kDirectory;
+    if (fs::exists(path + "/metadata.yaml", error)) return Place::kDirectory;
+    if (partsIn(path).empty()) refuseDirectory(path);
+    return Place::kParts;
   }
   const fs::path file(path);
   const std::string kind = file.extension();
@@ -112,7 +173,7 @@ Place placeOf(const std::string& path) {
                          "again");
   }
   requireComplete(path);
-  return kind == ".mcap" ? Place::kMcapFile : Place::kSqliteFile;
+  return Place::kFile;
 }
 
 void requireFiles(const std::vector<std::string>& files) {
@@ -140,7 +201,8 @@ std::vector<std::string> partsOf(const Metadata& metadata, const std::string& to
   return parts;
 }
 
-// Whether the first message with any of the joints has all of them, with the fields that are needed.
+// Whether the first message with any of the joints has all of them, with the fields that are needed. Of a
+// joint that it names twice, the reader tells.
 bool startsWithAll(JointStateSource& source, const RecordingOptions& options) {
   if (options.joints.empty()) return true;
   JointMatching matching(options.joints);
@@ -152,7 +214,8 @@ bool startsWithAll(JointStateSource& source, const RecordingOptions& options) {
   source.rewind();
   const bool filled = sample.position.size > 0 && sample.velocity.size > 0 &&
                       (sample.effort.size > 0 || !options.effort_required);
-  return found == JointMatching::Found::kAll && filled;
+  return found == JointMatching::Found::kRepeated ||
+         (found == JointMatching::Found::kAll && filled);
 }
 
 }  // namespace
@@ -167,15 +230,25 @@ void RecordingContent::read() {
   const Place place = placeOf(path);
   if (place == Place::kDirectory) {
     static_cast<Metadata&>(*this) = readMetadata(path + "/metadata.yaml");
+    sortParts(files);
     for (std::string& file : files) file = path + "/" + file;
     requireFiles(files);
     return;
   }
-  storage = place == Place::kMcapFile ? Storage::kMcap : Storage::kSqlite3;
-  files = {path};
-  const auto reader = open(path);
-  reader->countMessages();
-  connections = reader->connections();
+  files = place == Place::kParts ? partsIn(path) : std::vector<std::string>{path};
+  storage = fs::path(files.front()).extension() == ".mcap" ? Storage::kMcap : Storage::kSqlite3;
+  if (place == Place::kParts) {
+    note = "metadata.yaml is missing: " + counted(static_cast<std::int64_t>(files.size()), "file") +
+           " found in " + path + " read in the order of their numbers";
+    requireFiles(files);
+  } else {
+    note = partNote(path);
+  }
+  for (const std::string& file : files) {
+    const auto reader = open(file);
+    reader->countMessages();
+    for (const Connection& there : reader->connections()) connections.push_back(there);
+  }
 }
 
 // What is unpacked loses its name as soon as it is open.
@@ -269,7 +342,7 @@ std::unique_ptr<MessageSource> Recording::allMessages() const {
 std::unique_ptr<JointStateSource> Recording::jointStates(const std::string& topic) const {
   const std::string chosen = topicOfType(kJointState, topic);
   return std::make_unique<JointStates>(messages(chosen), path() + ": " + chosen,
-                                       expectedMessages(chosen));
+                                       expectedMessages(chosen), content_->note);
 }
 
 std::unique_ptr<JointStateSource> Recording::jointStates(const std::string& topic,

@@ -45,6 +45,7 @@ struct RecordingContent : Metadata {
   std::unique_ptr<StorageReader> open(const std::string& file) const;
 
   std::string path;
+  std::string note;  ///< what users should know of its files; or nothing
 
  private:
   void read();

@@ -65,9 +65,11 @@ class SqliteReader : public StorageReader {
 
   void select(const std::vector<bool>& wanted) override {
     wanted_ = wanted;
-    const std::string order = isOrdered() ? "rowid" : "timestamp, rowid";
-    messages_.emplace(database_,
-                      "SELECT topic_id, timestamp, data FROM messages ORDER BY " + order);
+    const bool ordered = isOrdered();
+    steps_ = !ordered && clockWasSet();
+    messages_.emplace(database_, std::string("SELECT topic_id, timestamp, data FROM messages "
+                                             "ORDER BY ") +
+                                     (ordered || steps_ ? "rowid" : "timestamp, rowid"));
     rows_ = 0;
     previous_ = std::numeric_limits<std::int64_t>::min();
     connection_ = kNone;
@@ -89,7 +91,7 @@ class SqliteReader : public StorageReader {
       }
       message.topic = &connections_[connection_].topic;
       message.received = messages_->integer(1);
-      if (message.received < previous_) {
+      if (message.received < previous_ && !steps_) {
         throw DamageError(
             "the index of times doesn't fit the messages; repair it with the command "
             "REINDEX of sqlite3");
@@ -173,6 +175,14 @@ class SqliteReader : public StorageReader {
     }
     return true;
   }
+
+  bool clockWasSet() {
+    Statement rows(database_, "SELECT timestamp FROM messages ORDER BY rowid");
+    StoredTimes stored;
+    for (rows_ = 0; rows.step(); countRow()) stored.add(rows.integer(0));
+    return stored.showStep();
+  }
+
   // A file can't hold more rows than bytes, unless its pages refer to each other in circles.
   void countRow() {
     if (++rows_ > size_) throw DamageError("there are more messages than fit into the file");
@@ -191,6 +201,7 @@ class SqliteReader : public StorageReader {
   std::uint64_t rows_ = 0;
   std::int64_t previous_ = 0, id_ = 0;
   std::size_t connection_ = kNone;  // of id_
+  bool steps_ = false;              // times of reception fall back
   bool done_ = true;
 };
 

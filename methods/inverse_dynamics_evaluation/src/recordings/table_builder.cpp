@@ -146,7 +146,7 @@ bool TableBuilder::matches(const JointSample& sample) {
     case JointMatching::Found::kRepeated:
       throw RecordingError(place(sample) + ": expected each joint once, got " + listed(names) +
                            "; repeated: " + listed(matching_.culprits()) +
-                           "; do two drivers publish on this topic?");
+                           "; correct the driver that publishes it, or give a table with one column per joint");
   }
   return false;
 }

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,9 +51,22 @@ def test_progress_counts_messages_to_the_end(bag):
 # What isn't a recording.
 
 
-def test_directory_without_metadata_names_the_remedy(bag):
+def test_file_without_metadata_is_read_and_told(bag):
     (bag / "metadata.yaml").unlink()
-    fails(bag, "has no metadata.yaml", f"give {bag / 'bag.db3'} itself", "ros2 bag reindex")
+    assert read_joint_log(bag).notes[0].startswith("metadata.yaml is missing: 1 file found in")
+
+
+def test_joint_twice_in_a_message_is_refused(tmp_path):
+    one = joint_log()
+    names = (*one.joint_names[:-1], one.joint_names[0])
+    write_joint_logs(tmp_path / "bag", {TOPIC: replace(one, joint_names=names)})
+    for joints in ((), names[:-1]):
+        fails(
+            tmp_path / "bag",
+            "message 1: expected each joint once",
+            f"repeated: {names[0]}",
+            joints=joints,
+        )
 
 
 def test_ros_1_recording_names_the_converter(tmp_path):

@@ -149,11 +149,11 @@ SQL = {
     "stamps beyond 64 bits": ("UPDATE messages SET timestamp = 1e30", ""),
     "a stamp at the end of time": (
         "UPDATE messages SET timestamp = 9223372036854775807 WHERE id = 7",
-        "message 300: time of reception: expected 0 to 4.6e+18 ns, got 9223372036854775807",
+        "message 7: time of reception: expected 0 to 4.6e+18 ns, got 9223372036854775807",
     ),
     "a stamp at the beginning of time": (
         "UPDATE messages SET timestamp = -9223372036854775808 WHERE id = 7",
-        "message 1: time of reception: expected 0 to 4.6e+18 ns, got -9223372036854775808",
+        "message 7: time of reception: expected 0 to 4.6e+18 ns, got -9223372036854775808",
     ),
     "data of numbers": (
         "UPDATE messages SET data = 7 WHERE id = 7",
