@@ -64,6 +64,7 @@ void markFaults(SampleTable& table, const SampleRules& rules, SampleReport& repo
   }
   report.second_source = markSecondSource(table);
   if (rules.non_increasing) report.clock_steps = undoClockSteps(table, kBeyond * rules.longest_gap);
+  if (rules.repeated) markLate(table);
   double latest = table.time[0];
   for (Index k = 0; k < table.size(); ++k) {
     table.non_increasing[k] = k > 0 && !(table.time[k] > latest);
@@ -127,7 +128,8 @@ Index loneSample(const SampleTable::JointColumns& columns, Index j) {
 LoneSample findLoneSample(const SampleTable& table) {
   for (Index j = 0; j < table.q.rows(); ++j) {
     for (const SampleTable::JointColumns* columns : {&table.qd, &table.q}) {
-      if (const Index k = loneSample(*columns, j); k > 0 && !table.repeated[k]) return {k, j, table.stamps()[k]};
+      if (const Index k = loneSample(*columns, j); k > 0 && !table.repeated[k])
+        return {k, j, table.stamps()[k]};
     }
   }
   return {};

@@ -25,8 +25,9 @@ constexpr double kMostJumps = 0.1;   // of the samples; more are a second motion
 constexpr Index kAhead = 10;         // samples in which stamps stay where a step took them
 constexpr double kStep = 1.5;        // periods; a shorter step is jitter
 constexpr double kForward = 3.0;  // periods; a shorter distance is jitter or a sample that was lost
-constexpr double kContradicts = 0.05;   // of the disagreement with the stamps, squared
-constexpr double kTypical = 9.0;        // times the typical disagreement, squared
+constexpr double kContradicts = 0.05;  // of the disagreement with the stamps, squared
+constexpr Index kStuck = 4;       // samples from one that is fresh to the next but one: some repeat
+constexpr double kTypical = 9.0;  // times the typical disagreement, squared
 constexpr Index kMostIntervals = 4096;  // that tell what is typical
 
 bool standsStill(const SampleTable& table, Index k) { return table.qd.col(k).isZero(0); }
@@ -98,17 +99,26 @@ double disagreement(const SampleTable& table, Index before, Index k, double dura
       .squaredNorm();
 }
 
+// Median over an interval of this duration [s]; 0: as stamped.
 double typicalDisagreement(const SampleTable& table, double period) {
   std::vector<double> found;
   const Index every = 1 + table.size() / kMostIntervals;
   for (Index k = 1; k < table.size(); k += every) {
     if (table.repeated[k] || table.repeated[k - 1]) continue;
-    found.push_back(disagreement(table, k - 1, k, period));
+    const double duration = period > 0 ? period : table.time[k] - table.time[k - 1];
+    found.push_back(disagreement(table, k - 1, k, duration));
   }
   if (found.empty()) return 0;
   const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
   std::nth_element(found.begin(), middle, found.end());
   return *middle;
+}
+
+// Number of the next sample that isn't marked; the size of the table: there is none.
+Index nextFresh(const SampleTable& table, Index k) {
+  do ++k;
+  while (k < table.size() && table.repeated[k]);
+  return k;
 }
 
 }  // namespace
@@ -201,6 +211,26 @@ std::vector<ClockStep> undoClockSteps(SampleTable& table, double gap) {
     table.time[k] = recorded + offset;
   }
   return steps;
+}
+
+void markLate(SampleTable& table) {
+  const double typical = kTypical * typicalDisagreement(table, 0);
+  const auto between = [&](Index a, Index b) {
+    return disagreement(table, a, b, table.time[b] - table.time[a]);
+  };
+  Index before = -1;
+  for (Index k = 0, after = 0; k < table.size(); k = after) {
+    after = nextFresh(table, k);
+    const bool repeats = before >= 0 && after < table.size() && after - before > kStuck;
+    if (repeats && !table.repeated[k]) {
+      const double least = std::min(between(before, k), between(k, after));
+      if (least > typical && between(before, after) < kContradicts * least) {
+        table.repeated[k] = true;
+        continue;
+      }
+    }
+    before = k;
+  }
 }
 
 }  // namespace v2

@@ -25,6 +25,10 @@ inline namespace v2 {
 /// @throws EvaluationError: one sample in ten belongs to a second source that moves.
 SecondSource markSecondSource(SampleTable& table);
 
+/// Marks samples beside several repeats that are late themselves: positions contradict the velocities on both sides, and
+/// those of the samples around don't. Times are those of a clock that goes on.
+void markLate(SampleTable& table);
+
 /// Shifts the times behind each step of the clock, so that time goes on.
 ///
 /// A clock stepped if stamps fall back and stay back, or go forward and stay there although positions and

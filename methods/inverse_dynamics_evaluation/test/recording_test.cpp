@@ -227,7 +227,8 @@ TEST_P(RecordingTest, ReadsFilesWithoutMetadataInTheOrderOfTheirNumbers) {
 
   const auto alone = Recording(run + "/run_3" + kind).jointStates();
   EXPECT_EQ(rest(*alone).size(), 100U);
-  EXPECT_THAT(alone->note(), HasSubstr("is one of 12 files of a recording, and read alone; give " + run));
+  EXPECT_THAT(alone->note(),
+              HasSubstr("is one of 12 files of a recording, and read alone; give " + run));
 
   fs::rename(run + "/run_3" + kind, run + "/other" + kind);
   EXPECT_THAT(errorOfReading(run), HasSubstr("has no metadata.yaml; give one of its files"));

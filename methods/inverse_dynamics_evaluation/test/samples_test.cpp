@@ -397,6 +397,19 @@ TEST(ExamineSamples, LeavesOutAPublisherThatRepeatsAnotherLater) {
   for (Eigen::Index k = 0; k < both.count(); ++k) EXPECT_EQ(report.used[k], k % 2 == 0) << k;
 }
 
+TEST(ExamineSamples, LeavesOutASampleBesideRepeatsThatIsLateItself) {
+  Motion motion = sines(100.0, 10.0, {0.5, 1.0});
+  const auto copy = [&](Eigen::Index from, Eigen::Index to) {
+    motion.q.col(to) = motion.q.col(from).eval();
+    motion.qd.col(to) = motion.qd.col(from).eval();
+    motion.effort.col(to) = motion.effort.col(from).eval();
+  };
+  for (Eigen::Index k = 311; k < 315; ++k) copy(305, k);
+  for (Eigen::Index k = 301; k < 311; ++k) copy(300, k);
+  const Examined report = examine(motion);
+  for (Eigen::Index k = 295; k < 320; ++k) EXPECT_EQ(report.used[k], k < 301 || k > 314) << k;
+}
+
 TEST(ExamineSamples, RefusesTwoPublishersThatMove) {
   const Motion both = alternating(sines(100.0, 10.0, {0.5, 1.0}), [](Motion& all, Eigen::Index k) {
     all.q.col(k) = -all.q.col(k).eval();

@@ -118,9 +118,9 @@ class McapReader : public StorageReader {
   }
 
   bool next(Message& message) override {
-    while (next_chunk_ < chunks_.size() &&
-           (open_.empty() ||
-            (!steps_ && chunks_[next_chunk_].begin_time <= open_.front()->time()))) {
+    while (
+        next_chunk_ < chunks_.size() &&
+        (open_.empty() || (!steps_ && chunks_[next_chunk_].begin_time <= open_.front()->time()))) {
       const ChunkIndex& chunk = chunks_[next_chunk_++];
       if (isWanted(chunk)) openChunk(chunk);
     }
@@ -361,10 +361,10 @@ class McapReader : public StorageReader {
   bool clockWasSet() {
     std::sort(chunks_.begin(), chunks_.end(),
               [](const auto& a, const auto& b) { return a.offset < b.offset; });
-    const bool overlap = std::adjacent_find(chunks_.begin(), chunks_.end(),
-                                            [](const auto& a, const auto& b) {
-                                              return b.begin_time < a.end_time;
-                                            }) != chunks_.end();
+    const bool overlap =
+        std::adjacent_find(chunks_.begin(), chunks_.end(), [](const auto& a, const auto& b) {
+          return b.begin_time < a.end_time;
+        }) != chunks_.end();
     if (!overlap) return false;
     Chunk chunk;
     StoredTimes stored;
@@ -434,7 +434,7 @@ class McapReader : public StorageReader {
   std::unordered_map<std::uint16_t, std::size_t> connection_of_;  // of a channel
   std::unordered_map<std::uint16_t, std::uint64_t> counts_;       // of messages of a channel
   bool counted_ = false;                                          // whether counts_ is known
-  std::vector<ChunkIndex> chunks_;                                // by time, then by place, or by place
+  std::vector<ChunkIndex> chunks_;  // by time, then by place, or by place
   ZstdUnpacker zstd_;
 
   std::vector<bool> wanted_;

@@ -37,8 +37,9 @@ class StoredTimes {
   bool showStep() const { return steps_ > 0 && kMessages * steps_ <= count_; }
 
  private:
-  static constexpr std::uint64_t kLeast = 20'000'000;  // ns; messages that arrive together differ by less
-  static constexpr std::int64_t kMessages = 20;        // at least, per step
+  static constexpr std::uint64_t kLeast =
+      20'000'000;                                // ns; messages that arrive together differ by less
+  static constexpr std::int64_t kMessages = 20;  // at least, per step
 
   // Of two times, of which the earlier is the first: it may be more than a signed number holds.
   static std::uint64_t distance(std::int64_t from, std::int64_t to) {

@@ -144,9 +144,10 @@ bool TableBuilder::matches(const JointSample& sample) {
                            ", in the order of the chain" +
                            didYouMean(matching_.culprits().front(), names, matching_.joints()));
     case JointMatching::Found::kRepeated:
-      throw RecordingError(place(sample) + ": expected each joint once, got " + listed(names) +
-                           "; repeated: " + listed(matching_.culprits()) +
-                           "; correct the driver that publishes it, or give a table with one column per joint");
+      throw RecordingError(
+          place(sample) + ": expected each joint once, got " + listed(names) +
+          "; repeated: " + listed(matching_.culprits()) +
+          "; correct the driver that publishes it, or give a table with one column per joint");
   }
   return false;
 }
