@@ -29,6 +29,9 @@ FEWEST = 20  # samples that a block can be differentiated with
 
 _ARRAYS = ("time", "instants", "used", "q", "qd", "qdd", "tau", "counts", "rests")  # of a block
 _REST = 0.01  # of each joint's greatest velocity, which a moving arm's joints aren't all below
+_HIGHER = (
+    1.3  # times the cut-off of the recording: a block that chooses more takes that of the recording
+)
 
 
 @dataclass(frozen=True)
@@ -122,9 +125,15 @@ def _accelerations(evaluation: Evaluation, rows: slice) -> tuple[Floats, Floats]
     if how.method == "backward-difference":
         return _core.backward_difference(time, log.qd[rows]), time
     motion = time, log.q[rows], log.qd[rows], log.effort[rows]
-    # zero: chosen from the block's motion; where the arm vibrates, efforts of the recording have chosen
-    cutoff = 0.0 if how.chosen and not how.by_efforts else how.cutoff or 0.0
-    return _core.low_pass_accelerations(*motion, cutoff)[:2]
+    whole = how.cutoff or 0.0
+    if (
+        not how.chosen or how.by_efforts
+    ):  # where the arm vibrates, efforts of the recording have chosen
+        return _core.low_pass_accelerations(*motion, whole)[:2]
+    qdd, instants, cutoff, _ = _core.low_pass_accelerations(*motion, 0.0)
+    if cutoff > _HIGHER * whole:  # a short block shows less of the noise
+        qdd, instants, *_ = _core.low_pass_accelerations(*motion, whole)
+    return qdd, instants
 
 
 def moving(blocks: Sequence[Block]) -> list[Block]:
