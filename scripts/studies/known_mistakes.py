@@ -428,6 +428,40 @@ def external(d: Draft, r: Random) -> Mistake:
     return Mistake("unrelated")
 
 
+def zero(d: Draft, r: Random) -> Mistake:
+    """One joint's positions are off: homed wrongly, or another convention."""
+    j = _turning(d, r)
+    angle = np.radians(r.choice([90.0, 180.0, r.uniform(5, 30)])) * r.choice([-1, 1])
+    d.q = d.q + angle * (np.arange(len(d.arm.joints)) == j)
+    return Mistake("zero", (d.arm.joints[j],))
+
+
+def effort_zero(d: Draft, r: Random) -> Mistake:
+    """One torque sensor is off."""
+    j = _turning(d, r)
+    off = r.uniform(0.3, 0.8) * np.ptp(d.effort[:, j]) * r.choice([-1, 1])
+    d.effort = d.effort + off * (np.arange(len(d.arm.joints)) == j)
+    return Mistake("effort_zero", (d.arm.joints[j],))
+
+
+def shifted(d: Draft, r: Random) -> Mistake:
+    """Efforts are read one column too far."""
+    d.effort = np.roll(d.effort, int(r.choice([-1, 1])), axis=1)
+    return Mistake("effort_order")
+
+
+def delay(d: Draft, r: Random) -> Mistake:
+    """Efforts are late, or a mean of those before."""
+    count = max(2, int(r.uniform(0.05, 0.25) / float(np.median(np.diff(d.time)))))
+    late = np.concatenate([np.repeat(d.effort[:1], count, axis=0), d.effort])
+    if r.integers(2):
+        sums = np.cumsum(late, axis=0)
+        d.effort = (sums[count:] - sums[:-count]) / count
+    else:
+        d.effort = late[:-count]
+    return Mistake("effort_delay")
+
+
 WORLD = (
     ceiling,
     wall,
@@ -444,10 +478,21 @@ WORLD = (
 RECORDED = (
     currents, common_scale, joint_scales, effort_sign, effort_direction, two_directions, direction, order,
     effort_order, degrees, velocity, clock, rates, motor_side, saturation, coupling,
-    one_in_degrees, twice_as_fast, external,
+    one_in_degrees, twice_as_fast, external, zero, effort_zero, shifted, delay,
 )  # fmt: skip
 # Seen by positions and velocities, or by the shape of efforts, however small the error is.
-SEEN = (friction, guided, drift, degrees, velocity, clock, motor_side, twice_as_fast, external)
+SEEN = (
+    friction,
+    guided,
+    drift,
+    degrees,
+    velocity,
+    clock,
+    motor_side,
+    twice_as_fast,
+    external,
+    effort_zero,
+)
 MOST_TRIES = 20
 
 

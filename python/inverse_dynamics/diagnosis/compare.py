@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics._core import Verdict
-from inverse_dynamics.diagnosis import bodies, efforts, motions, pairs, residuals
+from inverse_dynamics.diagnosis import bodies, efforts, motions, pairs, residuals, sensors
 from inverse_dynamics.diagnosis.arm import ArmModel
 from inverse_dynamics.diagnosis.fit import Fitting
 from inverse_dynamics.diagnosis.pieces import View
@@ -41,7 +41,7 @@ _MISMATCH = 0.02  # up to which a model fits
 _RUBS = 0.08  # from which a model is taken to lack friction
 _FITS = 0.1  # that a remedy may leave
 _FAR, _MOST_LEFT = 6.0, 0.2  # or this part of a greater error, up to this one
-_PAIR_FITS = 0.06  # that two remedies may leave
+_PAIR_FITS = 0.06  # that two remedies may leave, or one of a sensor
 _EXPLAINED = 0.02  # up to which no second mistake is looked for
 _GAIN = 2.0  # least ratio of the errors before and after
 _MARGIN, _FLAT = 1.15, 0.004  # a rival is worse by this ratio, and by this error
@@ -62,8 +62,8 @@ class Cause:
     """A mistake, and what to do about it. Errors: mean over the joints, as shares of measured ranges.
 
     kind: currents, effort_scale, effort_sign, effort_direction, effort_order, no_gravity, gravity, payload, tool,
-    mass, friction, guided, order, direction, degrees, velocity, clock, motor_side, saturation, coupling,
-    drift, unrelated. mistake: the nearest heading of PAGE; "": none is near. value: what was found, of kind's unit.
+    effort_zero, effort_delay, zero, mass, friction, guided, order, direction, degrees, velocity, clock, motor_side,
+    saturation, coupling, drift, unrelated. mistake: the nearest heading of PAGE; "": none is near. value: what was found, of kind's unit.
     error_after: None where the remedy's numbers aren't known. rival: one of several of which one is right.
     """
 
@@ -228,7 +228,8 @@ class _Contest:
             if not named or named[0][0].kind in _LIKE_COUPLING:
                 self.add(*residuals.couplings(view))
                 named = self.best(before)
-            if causes := self._pair(named, before) or _causes(named, self.as_is):
+            causes = self._pair(named, before) or _causes(named, self.as_is)
+            if causes := self._of_sensors(before, causes) or causes:
                 return Diagnosis(causes)
         return self._unnamed(before)
 
@@ -263,6 +264,19 @@ class _Contest:
             return Diagnosis(excluded=tuple(sorted({r.kind for r in self.rivals} - {"rough"})))
         lacks = self.fit.friction is None and self.as_is >= max(_GAIN * before, _RUBS)
         return Diagnosis(_causes([(residuals.FRICTION, before)] if lacks else [], self.as_is))
+
+    def _of_sensors(self, before: float, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
+        """A sensor that is off, if that leaves less than the causes that are named; beside a cause that leaves as much."""
+        contest = _Contest(self.view)
+        contest.add(bodies.rough(self.view), *sensors.rivals(self.view, self.fit))
+        found = contest.best(before)
+        least = min((cause.error_after or 0.0 for cause in causes), default=before)
+        if not found or found[0][1] > min(least, _PAIR_FITS):
+            return ()
+        own = _causes(found, self.as_is)
+        if len(causes) == 1 and _MARGIN * found[0][1] + _FLAT > least:
+            return tuple(replace(cause, rival=True) for cause in (*causes, *own))
+        return own
 
     @property
     def as_is(self) -> float:

@@ -197,6 +197,22 @@ def unrelated(samples: Pieces) -> Pieces:
     return replace(samples, measured=0.02 * np.ptp(samples.measured) * walk / np.abs(walk).max())
 
 
+def off_zero(joint: int, angle: float, samples: Pieces) -> Pieces:
+    q = samples.q.copy()
+    q[..., joint] -= np.radians(angle)
+    return replace(samples, q=q)
+
+
+def off_zero_effort(joint: int, samples: Pieces) -> Pieces:
+    measured = samples.measured.copy()
+    measured[..., joint] += 0.4 * np.ptp(measured[..., joint])
+    return replace(samples, measured=measured)
+
+
+def shifted_efforts(by: int, samples: Pieces) -> Pieces:
+    return replace(samples, measured=np.roll(samples.measured, by, axis=-1))
+
+
 MISTAKES = [
     (partial(scaled, 1 / GAINS), "currents", ()),
     (partial(scaled, -1.0), "effort_sign", ()),
@@ -230,6 +246,11 @@ MISTAKES = [
     (partial(velocities, 2.0), "velocity", ()),
     (partial(one_in_degrees, 1), "degrees", ()),
     (unrelated, "unrelated", ()),
+    (partial(off_zero, 1, 8.0), "zero", (1,)),
+    (partial(off_zero, 2, -90.0), "zero", (2,)),
+    (partial(off_zero_effort, 2), "effort_zero", (2,)),
+    (partial(shifted_efforts, 1), "effort_order", ()),
+    (partial(shifted_efforts, -1), "effort_order", ()),
 ]
 
 
