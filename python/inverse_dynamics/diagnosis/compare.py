@@ -61,9 +61,10 @@ KINDS = (efforts.rivals, bodies.rivals, efforts.columns, motions.rivals, residua
 class Cause:
     """A mistake, and what to do about it. Errors: mean over the joints, as shares of measured ranges.
 
-    kind: currents, effort_scale, effort_sign, effort_direction, effort_order, no_gravity, gravity, payload, tool,
-    effort_zero, effort_delay, zero, mass, friction, guided, order, direction, degrees, velocity, clock, motor_side,
-    saturation, coupling, drift, unrelated. mistake: the nearest heading of PAGE; "": none is near. value: what was found, of kind's unit.
+    kind: currents, effort_scale, effort_sign, effort_direction, effort_order, effort_zero, effort_delay, no_gravity,
+    gravity, payload, tool, mass, friction, guided, order, direction, zero, degrees, velocity, clock, motor_side,
+    saturation, coupling, drift, unrelated. mistake: the nearest heading of PAGE; "": none is near. value: what was
+    found, of kind's unit.
     error_after: None where the remedy's numbers aren't known. rival: one of several of which one is right.
     """
 
@@ -266,7 +267,7 @@ class _Contest:
         return Diagnosis(_causes([(residuals.FRICTION, before)] if lacks else [], self.as_is))
 
     def _of_sensors(self, before: float, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
-        """A sensor that is off, if that leaves less than the causes that are named; beside a cause that leaves as much."""
+        """A sensor that is off, if that leaves less than the causes named; beside a cause that leaves as much."""
         contest = _Contest(self.view)
         contest.add(bodies.rough(self.view), *sensors.rivals(self.view, self.fit))
         found = contest.best(before)

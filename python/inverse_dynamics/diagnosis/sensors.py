@@ -90,7 +90,7 @@ def _offset(view: View, fitting: Fitting, _: Floats, own: Floats) -> Mistake | N
 
 def _shifted(view: View) -> Iterator[Rival]:
     """Efforts of all joints, one column to the left or to the right."""
-    if len(view.names) < 3:  # noqa: PLR2004, of two it is an exchange
+    if len(view.names) < 3:  # of two it is an exchange
         return
     for by, other in ((1, "before"), (-1, "behind")):
         mistake = Mistake(
