@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
 # Errors: mean over the joints, as shares of their measured ranges.
 _MISMATCH = 0.02  # up to which a model fits
-_RUBS = 0.08  # from which a model is taken to lack friction
 _FITS = 0.1  # that a remedy may leave
 _FAR, _MOST_LEFT = 6.0, 0.2  # or this part of a greater error, up to this one
 _PAIR_FITS = 0.06  # that two remedies may leave
@@ -261,8 +260,8 @@ class _Contest:
             if min(rough, default=before) <= _MISMATCH:  # inexact masses explain it
                 return Diagnosis()
             return Diagnosis(excluded=tuple(sorted({r.kind for r in self.rivals} - {"rough"})))
-        lacks = self.fit.friction is None and self.as_is >= max(_GAIN * before, _RUBS)
-        return Diagnosis(_causes([(residuals.FRICTION, before)] if lacks else [], self.as_is))
+        friction = residuals.friction(self.view, self.fit, before)
+        return Diagnosis(_causes([(friction, before)] if friction else [], self.as_is))
 
     @property
     def as_is(self) -> float:

@@ -346,12 +346,30 @@ def test_somebody_who_guides_the_arm_is_found(arm):
     assert only(compare(recorded(name, friction=-0.1), model)).kind == "guided"
 
 
-def test_a_model_without_friction_is_told_so(arm):
+@pytest.mark.parametrize("friction", [0.06, 0.15])
+def test_a_model_without_friction_is_told_so(arm, friction):
     name, _, model = arm
-    samples = recorded(name, friction=0.15)
+    samples = recorded(name, friction=friction)
     assert only(compare(samples, model)).kind == "friction"
     rubs = replace(model, friction=lambda q, qd: np.zeros_like(qd))
     assert compare(samples, rubs).causes == ()
+
+
+@pytest.mark.parametrize(("friction", "told"), [(0.0, True), (0.02, True), (0.08, False)])
+def test_friction_that_efforts_lack_is_told(arm, friction, told):
+    name, samples, model = arm
+    span = np.ptp(samples.measured, axis=(0, 1))
+
+    def rubbing(q, qd):
+        return 0.1 * span * (np.tanh(qd / 0.05) + 0.3 * qd)
+
+    rubs = replace(
+        model,
+        friction=rubbing,
+        torques=lambda *motion: model.torques(*motion) + rubbing(*motion[:2]),
+    )
+    found = compare(recorded(name, friction=friction), rubs)
+    assert ["--no-friction" in cause.remedy for cause in found.causes] == [True] * told
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.02])
