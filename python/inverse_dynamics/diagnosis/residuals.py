@@ -26,7 +26,7 @@ _LONG = 15.0  # s: in less, friction that changes is nothing but wrong
 _LEAVES = 0.6  # most of a joint's error that its cause may leave
 _CLEARER = 1.5  # least ratio of the errors that wrong masses leave to those that drift leaves
 _NOTICED = 0.03  # least error of a joint that is looked at, as a share of its range
-_MOSTLY = 2.0  # least ratio of the errors before and after friction
+_MOSTLY = 0.5  # of the mean square error: what friction must explain
 _LACKS = 0.5  # most of the model's friction that an arm without it has
 
 
@@ -168,7 +168,7 @@ def friction(view: View, fitting: Fitting, after: float) -> Mistake | None:
     error = view.samples.flat(view.samples.measured) - view.computed
     error = (error - error.mean(axis=0)) / fitting.size  # an offset isn't friction
     before = float(fitting.mean((error**2).reshape(fitting.shape).mean(axis=1)))
-    if before < max(_MOSTLY * after, _NOTICED):
+    if before < _NOTICED or after**2 > (1 - _MOSTLY) * before**2:
         return None
     if view.friction is None:
         return FRICTION
