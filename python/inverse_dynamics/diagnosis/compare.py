@@ -152,6 +152,8 @@ def meaning_of_efforts(
     """
     if samples is None or not samples.comparable:
         return Verdict("torque", sure=False, reason="there are too few valid samples of a motion")
+    if arm.guessed:
+        return Verdict("torque", sure=False, reason="masses of the description are guesses")
     view = View(samples, arm)
     predicted = {"torque": view.computed, "torque_without_gravity": view.computed - view.gravity}
     if len(drive_gains):
@@ -181,6 +183,10 @@ def compare(samples: Pieces | None, arm: ArmModel) -> Diagnosis:
     if samples is None or not samples.comparable:
         return Diagnosis()
     found = motions.contradictions(samples, arm)
+    if arm.guessed:
+        alone = [(finding, None) for finding, _ in found]
+        beyond = [(finding, None) for finding in motions.beyond_reach(View(samples, arm))]
+        return Diagnosis(_causes(alone or beyond, _Contest(View(samples, arm)).as_is))
     if not found:
         return _Contest(View(samples, arm)).decide()
     # torques tell which correction is right, where more than one removes the contradiction
