@@ -67,7 +67,8 @@ class Finding:
     """Something to know about the result, in words.
 
     kind: floor (a link's description is unusable), delay, motion (a joint that hardly moves), samples, gain
-    (no better than the starting model), worse (a joint that the description predicts better).
+    (no better than the starting model), worse (a joint that the description or the present model predicts
+    better).
     """
 
     kind: str

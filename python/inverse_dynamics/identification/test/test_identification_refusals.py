@@ -126,9 +126,7 @@ def test_masses_that_are_guesses_are_no_evidence(log, guessed, tmp_path, scale):
     told = [note for note in evaluation.explained.notes if "rests on the efforts" in note]
     assert len(told) == 1
     found = identify([tmp_path / "recording"], guessed, effort_is="torque", blocks=3)
-    assert (
-        found.rmse("identified") < 0.25 * scale
-    )  # N m; the noise is 0.1
+    assert found.rmse("identified") < 0.25 * scale  # N m; the noise is 0.1
     assert [note for note in found.notes if "rests on the efforts" in note] == told
     with pytest.raises(PayloadError, match="no load can be told from masses that are guesses"):
         estimate_payload(tmp_path / "recording", guessed)
@@ -266,13 +264,21 @@ def test_efforts_that_are_a_small_part_of_the_torques(found):
         check_result(replace(small, held_out=found.held_out))
 
 
-def test_a_joint_that_the_description_predicts_better_is_a_finding():
-    held = {"urdf": np.array([1.0, 0.93]), "identified": np.array([0.5, 1.06])}
+@pytest.mark.parametrize(
+    ("start", "said"),
+    [
+        ("urdf", "the description without friction has 0.93"),
+        ("present", "the present model has 0.93"),
+    ],
+)
+def test_a_joint_that_was_predicted_better_before_is_a_finding(start, said):
+    held = {"urdf": np.array([1.0, 2.0]), "identified": np.array([0.5, 1.06])}
+    held[start] = np.array([1.0, 0.93])
     fitter = SimpleNamespace(joint_names=("a", "b"), changes=("", ""))
     (finding,) = findings_of_errors(fitter, ("link_a", "link_b"), held, ("N m", "N m"))
     assert (finding.kind, finding.joint) == ("worse", "b")
     assert "b: 1.06 N m on blocks held out" in finding.text
-    assert "has 0.93" in finding.text
+    assert said in finding.text
 
 
 def test_friction_of_the_wrong_sign(found):
