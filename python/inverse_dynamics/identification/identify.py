@@ -55,6 +55,7 @@ from inverse_dynamics.identification.uncertainty import (
     with_levels,
 )
 from inverse_dynamics.progress import no_progress
+from inverse_dynamics.recordings.sketch import sketch_of
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.dh_tables import guess_of
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot
@@ -375,6 +376,7 @@ def _result(
         factor=factor,
         band=with_levels(band_of(chosen, factor, blocks, _effort_limits(chain)), levels),
         levels=levels,
+        sketch=tuple(x for e in evaluations for x in sketch_of(e.log)),
         findings=(
             *gravity,
             *findings_of_errors(fitter, links, rmse, first.units),

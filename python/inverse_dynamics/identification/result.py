@@ -219,6 +219,7 @@ class Identification(ResultFiles):
     notes: tuple[str, ...]  # of reading and differentiating, as evaluate() has them
     drive_gains: tuple[DriveGain, ...] = ()  # determined with known loads; of currents only
     hold_out: tuple[HoldOut, ...] = ()  # errors on recordings that nothing was fitted to
+    sketch: tuple[str, ...] = ()  # of the recordings, by which evaluate() recognises their samples
 
     def numbers(self) -> dict[str, Any]:
         """Everything but the samples, for JSON."""

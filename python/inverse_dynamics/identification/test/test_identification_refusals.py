@@ -132,6 +132,7 @@ def test_masses_that_are_guesses_are_no_evidence(log, guessed, tmp_path, scale):
         estimate_payload(tmp_path / "recording", guessed)
     found.save(tmp_path / "arm.yaml")
     assert not Arm(load_robot(tmp_path / "arm.yaml")).guess  # the data have told the masses
+    assert evaluate(tmp_path / "recording", tmp_path / "arm.yaml").fitted
 
 
 @pytest.mark.parametrize("guessed", [""], indirect=True)
