@@ -61,8 +61,8 @@ __all__ = [
 ]
 
 FITTED = (
-    "the model was fitted to this recording: errors on others are greater, as those that `ids identify` states of data "
-    "held out"
+    "the model was fitted to this recording, so its errors on other recordings are larger: see the held-out errors of "
+    "`ids identify`"
 )
 """Note of an evaluation of what the model was fitted to."""
 

@@ -297,6 +297,16 @@ def test_the_units_of_efforts_are_named(arm):
         assert value is None or cause.value == value
 
 
+def test_limits_that_nobody_stated_are_no_evidence(arm):
+    _, samples, model = arm
+    unknown = np.full(len(samples.joints), np.inf)
+    efforts = compare(per_mille(samples), replace(model, effort_limits=unknown))
+    assert "limits" not in efforts.text
+    limits = np.array([-unknown, unknown])
+    motors = compare(of_motors(samples), replace(model, position_limits=limits))
+    assert "motor_side" not in [cause.kind for cause in motors.causes]
+
+
 def test_gravity_that_is_taken_off_is_found(arm):
     name, samples, model = arm
     gravity = model.gravity(samples.flat(samples.q)).reshape(samples.q.shape)

@@ -8,8 +8,10 @@ import pytest
 
 from inverse_dynamics import FastModel, load_robot
 from inverse_dynamics.errors import RobotError
+from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.dh_tables import guess_of
+from inverse_dynamics.robots.robots import robot_of_description
 
 # Published by the makers: Universal Robots, "DH parameters", and Franka, "Robot and interface
 # specifications".
@@ -68,6 +70,15 @@ def test_limits_and_names_are_those_of_the_table(tmp_path):
     assert f'upper="{2 * np.pi!r}" velocity="3.0" effort="56.0"' in text
     assert '<joint name="joint2" type="prismatic">' in text
     assert '<joint name="joint1" type="continuous">' in text
+
+
+def test_limits_that_a_table_lacks_are_none(tmp_path):
+    file = tmp_path / "arm.yaml"
+    file.write_text(UR10)
+    arm = Arm(robot_of_description(file))
+    assert arm.limit("effort", np.inf).tolist() == [np.inf] * 5 + [56.0]
+    assert arm.limit("velocity", np.inf).tolist() == [np.inf] * 5 + [3.0]
+    assert arm.limit("upper", np.inf)[0] == np.inf
 
 
 @pytest.mark.parametrize(
