@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.evaluation.evaluation import FITTED
 from inverse_dynamics.evaluation.figure import run_color, runs_figure
 from inverse_dynamics.evaluation.page import report_run
 from inverse_dynamics.show.page import render_page
@@ -48,7 +49,12 @@ class Comparison(ResultDirectory):
         """Errors of each run, for JSON."""
         first = self.evaluations[0]
         runs = [
-            {"label": label, "plugin": evaluation.robot.plugin, "rmse": rmse}
+            {
+                "label": label,
+                "plugin": evaluation.robot.plugin,
+                "rmse": rmse,
+                "fitted": evaluation.fitted,
+            }
             for label, evaluation, rmse in zip(
                 self.labels, self.evaluations, self.rmse, strict=True
             )
@@ -68,8 +74,14 @@ class Comparison(ResultDirectory):
     def table(self) -> ReportTable:
         """Root mean square errors, one column per run."""
         title = f"RMSE of {' and '.join(self.labels)}"
-        columns = dict(zip(self.labels, self.rmse, strict=True))
-        return of_joints(title, self.joint_names, self.evaluations[0].units, columns, means=columns)
+        headings = [
+            f"{label} *" if e.fitted else label
+            for label, e in zip(self.labels, self.evaluations, strict=True)
+        ]
+        columns = dict(zip(headings, self.rmse, strict=True))
+        note = f"* {FITTED}" if any(e.fitted for e in self.evaluations) else ""
+        units = self.evaluations[0].units
+        return of_joints(title, self.joint_names, units, columns, note, means=columns)
 
     def plot(self) -> Figure:
         """Measured torque and that of each run over time, and the runs' errors, one row per joint."""

@@ -55,6 +55,7 @@ class ArmModel:
     joint_types: tuple[str, ...] = ()  # revolute, continuous, prismatic; none: all are revolute
     position_limits: Floats | None = None  # (2, n) rad or m
     effort_limits: Floats | None = None  # (n,) N m or N
+    guessed: bool = False  # masses are made up: torques are no evidence
 
     def of_type(self, kind: str, joints: int) -> Mask:
         """(n,) joints of a type."""
@@ -106,6 +107,7 @@ def arm_model(arm: Arm, *, without_gravity: bool = False) -> ArmModel:
         (lambda q, qd: solver.friction_vector(qd, q=q)) if rubs else None,
         compared_without_gravity=without_gravity,
         joint_types=tuple(solver.joint_types),
+        guessed=bool(arm.guess),
     )
     with suppress(SolverError):  # solvers needn't be able to
         model = replace(model, gravity_direction=solver.gravity, pulled=pulled)

@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
 # Errors: mean over the joints, as shares of their measured ranges.
 _MISMATCH = 0.02  # up to which a model fits
-_RUBS = 0.08  # from which a model is taken to lack friction
 _FITS = 0.1  # that a remedy may leave
 _FAR, _MOST_LEFT = 6.0, 0.2  # or this part of a greater error, up to this one
 _PAIR_FITS = 0.06  # that two remedies may leave, or one of a sensor
@@ -154,6 +153,8 @@ def meaning_of_efforts(
     """
     if samples is None or not samples.comparable:
         return Verdict("torque", sure=False, reason="there are too few valid samples of a motion")
+    if arm.guessed:
+        return Verdict("torque", sure=False, reason="masses of the description are guesses")
     view = View(samples, arm)
     predicted = {"torque": view.computed, "torque_without_gravity": view.computed - view.gravity}
     if len(drive_gains):
@@ -183,6 +184,10 @@ def compare(samples: Pieces | None, arm: ArmModel) -> Diagnosis:
     if samples is None or not samples.comparable:
         return Diagnosis()
     found = motions.contradictions(samples, arm)
+    if arm.guessed:
+        alone = [(finding, None) for finding, _ in found]
+        beyond = [(finding, None) for finding in motions.beyond_reach(View(samples, arm))]
+        return Diagnosis(_causes(alone or beyond, _Contest(View(samples, arm)).as_is))
     if not found:
         return _Contest(View(samples, arm)).decide()
     # torques tell which correction is right, where more than one removes the contradiction
@@ -263,8 +268,8 @@ class _Contest:
             if min(rough, default=before) <= _MISMATCH:  # inexact masses explain it
                 return Diagnosis()
             return Diagnosis(excluded=tuple(sorted({r.kind for r in self.rivals} - {"rough"})))
-        lacks = self.fit.friction is None and self.as_is >= max(_GAIN * before, _RUBS)
-        return Diagnosis(_causes([(residuals.FRICTION, before)] if lacks else [], self.as_is))
+        friction = residuals.friction(self.view, self.fit, before)
+        return Diagnosis(_causes([(friction, before)] if friction else [], self.as_is))
 
     def _of_sensors(self, before: float, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
         """A sensor that is off, if that leaves less than the causes named; beside a cause that leaves as much."""

@@ -161,12 +161,17 @@ def _with_slopes(samples: Pieces, wrong: Mask) -> Pieces:
 
 def beyond_limits(view: View) -> Mask:
     """(n,) joints that turn and are far beyond their limits, or beyond two turns without any."""
-    greatest = np.abs(view.motion[0]).max(axis=0)
-    limit = np.full(len(view.names), _TURNS)
-    if view.arm.position_limits is not None:
-        stated = np.abs(view.arm.position_limits).max(axis=0)
-        limit = np.where(np.isfinite(stated) & (stated > 0), stated, limit)
+    greatest, stated = np.abs(view.motion[0]).max(axis=0), _stated_limits(view)
+    limit = np.where(np.isfinite(stated), stated, _TURNS)
     return np.asarray(~view.prismatic & (greatest > _BEYOND * limit))
+
+
+def _stated_limits(view: View) -> Floats:
+    """(n,) of positions; infinite where the description states none."""
+    if view.arm.position_limits is None:
+        return np.full(len(view.names), np.inf)
+    stated = np.abs(view.arm.position_limits).max(axis=0)
+    return np.where(stated > 0, stated, np.inf)
 
 
 def rivals(view: View, _: Fitting) -> Iterator[Rival]:
@@ -179,7 +184,8 @@ def rivals(view: View, _: Fitting) -> Iterator[Rival]:
             names = view.samples.named(np.array(which))
             some = "" if which == tuple(~view.prismatic) else f" of {listed(names)}"
             finding = _degrees(
-                f"positions{some} are beyond the joints' limits, and torques match if they are degrees",
+                f"positions{some} are beyond the joints' limits, or two turns where none is stated, and torques match "
+                "if they are degrees",
                 ~np.array(which),
             )
             yield view.rival("degrees", finding, base=view.arm.compared(q, qd, qdd), qd=qd)
@@ -208,8 +214,8 @@ def _clock(square: Floats, _: Floats) -> Mistake | None:
 
 def beyond_reach(view: View) -> tuple[Mistake, ...]:
     """Positions that are beyond limits in most joints, and torques that fit neither as rad nor as degrees."""
-    bounded = ~view.prismatic & ~view.arm.of_type("continuous", len(view.names))
-    beyond, turning = beyond_limits(view), view.informative & bounded
+    bounded = ~view.prismatic & np.isfinite(_stated_limits(view))  # two turns are a guess
+    beyond, turning = bounded & beyond_limits(view), view.informative & bounded
     if not turning.any() or beyond[turning].mean() < 0.5:
         return ()
     greatest = np.abs(view.motion[0]).max(axis=0)

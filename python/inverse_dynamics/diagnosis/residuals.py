@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,8 @@ _LONG = 15.0  # s: in less, friction that changes is nothing but wrong
 _LEAVES = 0.6  # most of a joint's error that its cause may leave
 _CLEARER = 1.5  # least ratio of the errors that wrong masses leave to those that drift leaves
 _NOTICED = 0.03  # least error of a joint that is looked at, as a share of its range
+_MOSTLY = 0.5  # of the mean square error: what friction must explain
+_LACKS = 0.5  # most of the model's friction that an arm without it has
 
 
 FRICTION = Mistake(
@@ -33,6 +36,11 @@ FRICTION = Mistake(
     "the error is mostly friction and offset, which the model lacks",
     "take a model with friction, or make one: ids identify RECORDING --robot NAME --out arm.yaml, or "
     "with --urdf FILE instead of --robot NAME",
+)
+_NO_FRICTION = replace(
+    FRICTION,
+    reason="the error is mostly the model's friction, which the efforts lack",
+    remedy="give --no-friction: a simulated arm may have none, and some controllers compensate it",
 )
 _GUIDED = Mistake(
     "guided",
@@ -153,6 +161,21 @@ def _coupled(pair: tuple[str, str], ratio: Floats, _: Floats) -> Mistake:
         value=value,
         shared=np.array([value]),
     )
+
+
+def friction(view: View, fitting: Fitting, after: float) -> Mistake | None:
+    """Friction that the model lacks, or has and the arm doesn't. after: the error that fitted friction leaves."""
+    error = view.samples.flat(view.samples.measured) - view.computed
+    error = (error - error.mean(axis=0)) / fitting.size  # an offset isn't friction
+    before = float(fitting.mean((error**2).reshape(fitting.shape).mean(axis=1)))
+    if before < _NOTICED or after**2 > (1 - _MOSTLY) * before**2:
+        return None
+    if view.friction is None:
+        return FRICTION
+    own = view.friction / fitting.size
+    real = own + fitting.friction_of(view.rival("friction")) / fitting.size
+    own, real = own - own.mean(axis=0), real - real.mean(axis=0)
+    return _NO_FRICTION if (own * real).sum() < _LACKS * (own**2).sum() else None
 
 
 def of_joints(view: View, fitting: Fitting, plain: Floats) -> Mistake | None:

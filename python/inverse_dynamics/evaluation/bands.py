@@ -95,17 +95,17 @@ def rest_share(qd: Floats, friction: Sequence[Mapping[str, float]], seen: Floats
     return np.asarray(np.exp(-((qd / settled) ** 2)))
 
 
-def read_band(model: Path | None, solver: Solver) -> tuple[TorqueBand | None, str]:
-    """The band of a model file, if there is one; and why the file beside it isn't used.
+def read_band(model: Path | None, solver: Solver) -> tuple[TorqueBand | None, str, Sequence[str]]:
+    """The band of a model file, if there is one; why the file beside it isn't used; the sketch of what it is fitted to.
 
     Raises RobotError: a file that isn't one of `ids identify`.
     """
     if model is None or solver.seen is None or not model_errors_file(model).is_file():
-        return None, ""
+        return None, "", ()
     content, why = read_model_errors(model)
     if content is None or "band" not in content:
-        return None, why
+        return None, why, ()
     factor, friction = np.array(content["deviations"], dtype=float).T, content["friction"]
     seen = np.abs(solver.seen[1]).max(axis=1)
     numbers = {key: np.array(values) for key, values in content["band"].items()}
-    return TorqueBand(factor, friction, seen=seen, **numbers), ""
+    return TorqueBand(factor, friction, seen=seen, **numbers), "", content["fitted_to"]

@@ -32,6 +32,7 @@ from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.bags import write_torques
 from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.recordings.sketch import has_samples_of
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import Robot
 from inverse_dynamics.show.result import PAGE, SERIES, ResultDirectory, files_of
@@ -58,6 +59,12 @@ __all__ = [
     "joint_errors",
     "open_run",
 ]
+
+FITTED = (
+    "the model was fitted to this recording, so its errors on other recordings are larger: see the held-out errors of "
+    "`ids identify`"
+)
+"""Note of an evaluation of what the model was fitted to."""
 
 CAUSE = "likely cause of the error: "
 """Prefix of the note that states a diagnosis."""
@@ -112,6 +119,7 @@ class Evaluation(ResultDirectory):
     effort: Effort = field(default_factory=Effort)  # what recorded efforts mean
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
     joint_types: tuple[str, ...] = ()  # as Solver.joint_types; not in files
+    fitted: bool = False  # whether the model was fitted to samples of this recording
     band: Floats | None = None  # (N, n) half the width of the model's 95 % band; None: not known
     run: Run | None = field(default=None, compare=False)  # what was evaluated; not in files
     causes: tuple[Cause, ...] | None = None  # those that `explained` has found; not in files
@@ -169,6 +177,7 @@ class Evaluation(ResultDirectory):
             "effort": found.effort,
             "joints": found.errors,
             "mean_rmse": found.mean_rmse if len(set(found.units)) == 1 else None,
+            "fitted": found.fitted,
             **({} if found.band is None else {"in_band": found.coverage}),
             "kept": {
                 "samples": len(found.log) - found.samples.left_out,
@@ -209,7 +218,16 @@ class Evaluation(ResultDirectory):
         write_torques(
             directory / "bag", storage or log.storage, "/torques", log, torques, progress=progress
         )
-        names = ("robot", "bag", "joint_names", "units", "accelerations", "effort", "notes")
+        names = (
+            "robot",
+            "bag",
+            "joint_names",
+            "units",
+            "accelerations",
+            "effort",
+            "notes",
+            "fitted",
+        )
         recording = ("joint_names", "frame_id", "clock", "topic", "storage", "effort_is", "notes")
         about = {
             "schema": SCHEMA,
@@ -354,7 +372,8 @@ def evaluate_run(run: Run) -> Evaluation:
     outside = outside_of_seen(
         arm.solver.seen, states, run.samples.kept, arm.joint_names, arm.units, types=types
     )
-    band, other = read_band(arm.robot.model, arm.solver)
+    band, other, sketch = read_band(arm.robot.model, arm.solver)
+    fitted = bool(sketch) and has_samples_of(log, sketch)
     return Evaluation(
         robot=replace(
             arm.robot, joints=arm.recorded_names, topic=log.topic, effort=found.effort.meaning
@@ -372,7 +391,8 @@ def evaluate_run(run: Run) -> Evaluation:
         errors=found.errors(arm.units),
         errors_of_kept=found.errors_of_kept(arm.units),
         effort=found.effort,
-        notes=(*run.notes, *found.notes, *filter(None, [outside, other])),
+        notes=(*run.notes, *found.notes, *filter(None, [outside, other, FITTED * fitted])),
+        fitted=fitted,
         joint_types=types,
         band=None if band is None else band.of_recording(arm.solver, *states),
         run=run,

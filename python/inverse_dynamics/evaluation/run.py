@@ -21,7 +21,6 @@ from inverse_dynamics.recordings.log_format import LogFormat
 from inverse_dynamics.recordings.recordings import open_motion
 from inverse_dynamics.recordings.time_window import TimeWindow
 from inverse_dynamics.robots.arm import Arm
-from inverse_dynamics.robots.dh_tables import guess_notes
 from inverse_dynamics.robots.robots import Robot, load_robot, with_changes
 from inverse_dynamics.robots.solvers import description_notes
 
@@ -195,7 +194,7 @@ def open_run(
             *window.notes,
             *_topic_notes(bag, motion, topic or robot.topic),
             *posture.notes,
-            *(guess_notes(robot.urdf) if robot.urdf is not None else ()),
+            *filter(None, [arm.guess]),
             *(description_notes(robot, "drawing") if options.get("urdf") is not None else ()),
         ),
         posture_changes=posture.moves,

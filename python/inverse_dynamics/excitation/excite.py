@@ -194,7 +194,7 @@ def excite(
         noise_source=noise_source,
         greatest=greatest,
         travel=travel,
-        notes=(*simulated.chain.notes, *notes, *found.notes),
+        notes=(*filter(None, [arm.guess]), *simulated.chain.notes, *notes, *found.notes),
     )
 
 

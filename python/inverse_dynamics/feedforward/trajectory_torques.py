@@ -164,7 +164,7 @@ def trajectory_torques(
         ),
         trajectories=tuple(trajectories),
         topic=trajectories[0].topic if trajectories else "",
-        notes=(*notes, *solver.warnings),
+        notes=(*notes, *filter(None, [arm.guess]), *solver.warnings),
     )
 
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _LITTLE_MOTION = 0.1  # rad or m
 _FEW_SAMPLES = 20
+_STARTS = {"present": "the present model", "urdf": "the description without friction"}
 
 
 def findings_of_errors(
@@ -33,18 +34,15 @@ def findings_of_errors(
         for link, text in zip(links, fitter.changes, strict=True)
         if text
     ]
-    found += [
-        Finding(
-            "worse",
-            f"{joint}: {new:.3g} {unit} on blocks held out, where the description without friction has {old:.3g}: "
-            "the motion tells too little of the joint; record one in which it is loaded and turns round more often",
-            joint,
-        )
-        for joint, unit, new, old in zip(
-            fitter.joint_names, units, held["identified"], held["urdf"], strict=True
-        )
-        if new > old
-    ]
+    for j, (joint, unit) in enumerate(zip(fitter.joint_names, units, strict=True)):
+        of = min((column for column in _STARTS if column in held), key=lambda c: held[c][j])
+        new, old = held["identified"][j], held[of][j]
+        if new > old:
+            text = (
+                f"{joint}: {new:.3g} {unit} on blocks held out, where {_STARTS[of]} has {old:.3g}: the motion tells "
+                "too little of the joint; record one in which it is loaded and turns round more often"
+            )
+            found.append(Finding("worse", text, joint))
     identified = held["identified"].mean()
     baseline = min((held[c].mean(), c) for c in held if c != "identified")
     if identified >= baseline[0]:

@@ -55,7 +55,9 @@ from inverse_dynamics.identification.uncertainty import (
     with_levels,
 )
 from inverse_dynamics.progress import no_progress
+from inverse_dynamics.recordings.sketch import sketch_of
 from inverse_dynamics.robots.descriptions import read_description
+from inverse_dynamics.robots.dh_tables import guess_of
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot
 
 if TYPE_CHECKING:
@@ -166,6 +168,7 @@ def identify(
     )
     check_recordings(evaluations, accept)
     robot = evaluations[0].robot
+    _check_gravity(evaluations)
     plain = replace(robot, plugin=RIGID_BODY, model=None)
     evaluations = [replace(e, measured=torques_with_gravity(e, plain)) for e in evaluations]
     by_day = len(evaluations) > 1 and blocks is None
@@ -199,6 +202,18 @@ def _check_given(recordings: Sequence[Path | str], known: Sequence[KnownPayload]
     for recording, path in zip(given, resolved, strict=True):
         if resolved.count(path) > 1:
             raise IdentificationError(f"{recording}: expected each recording once, got it twice")
+
+
+def _check_gravity(evaluations: Sequence[Evaluation]) -> None:
+    """Gravity that efforts lack is that of the description, which must have masses."""
+    for evaluation in evaluations:
+        guess = guess_of(evaluation.robot.urdf)
+        if guess and evaluation.effort.meaning == "torque_without_gravity":
+            raise IdentificationError(
+                f"{evaluation.bag}: efforts lack gravity, and the gravity that the robot subtracts isn't known: "
+                f"{guess.partition(':')[0]}; give --urdf with masses, or record torques with gravity",
+                "Gravity is subtracted from the efforts",
+            )
 
 
 def _days(evaluations: Sequence[Evaluation]) -> list[list[Block]]:
@@ -361,6 +376,7 @@ def _result(
         factor=factor,
         band=with_levels(band_of(chosen, factor, blocks, _effort_limits(chain)), levels),
         levels=levels,
+        sketch=tuple(x for e in evaluations for x in sketch_of(e.log)),
         findings=(
             *gravity,
             *findings_of_errors(fitter, links, rmse, first.units),

@@ -67,7 +67,8 @@ class Finding:
     """Something to know about the result, in words.
 
     kind: floor (a link's description is unusable), delay, motion (a joint that hardly moves), samples, gain
-    (no better than the starting model), worse (a joint that the description predicts better).
+    (no better than the starting model), worse (a joint that the description or the present model predicts
+    better).
     """
 
     kind: str
@@ -218,6 +219,7 @@ class Identification(ResultFiles):
     notes: tuple[str, ...]  # of reading and differentiating, as evaluate() has them
     drive_gains: tuple[DriveGain, ...] = ()  # determined with known loads; of currents only
     hold_out: tuple[HoldOut, ...] = ()  # errors on recordings that nothing was fitted to
+    sketch: tuple[str, ...] = ()  # of the recordings, by which evaluate() recognises their samples
 
     def numbers(self) -> dict[str, Any]:
         """Everything but the samples, for JSON."""

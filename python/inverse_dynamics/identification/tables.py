@@ -33,7 +33,7 @@ def identification_numbers(found: Identification) -> dict[str, Any]:
         **{
             name: plain(getattr(found, name))
             for name in found.__dataclass_fields__
-            if name not in ("robot", "blocks", "factor", "band")
+            if name not in ("robot", "blocks", "factor", "band", "sketch")
         },
         "blocks": [
             {

@@ -140,6 +140,7 @@ def uncertainty_text(found: Identification, model_text: str) -> str:
             key: _rows([getattr(found.band, key)], _DIGITS)[0]
             for key in ("noise", "level", "share")
         },
+        "fitted_to": list(found.sketch),
     }
     return json.dumps(content, allow_nan=False) + "\n"
 

@@ -191,6 +191,10 @@ def estimate_payload(
         Those of evaluate(), PayloadError.
     """
     evaluation = evaluate(bag, robot, progress=progress, **options)
+    if evaluation.arm.guess:
+        raise PayloadError(
+            f"{evaluation.bag}: no load can be told from masses that are guesses: {evaluation.arm.guess}"
+        )
     _require_own_tip(evaluation.robot, options.get("tip"))
     _require_plausible(evaluation)
     solver = evaluation.arm.solver_with()  # one that may carry a load

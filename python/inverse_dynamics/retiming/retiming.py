@@ -203,7 +203,7 @@ def retime(
     arm = Arm(robot)
     options = options or RetimeOptions()
     limits = described_limits(arm, limits)
-    notes = [*arm.solver.warnings, *_notes_of_velocities(arm, limits)]
+    notes = [*filter(None, [arm.guess]), *arm.solver.warnings, *_notes_of_velocities(arm, limits)]
     if not isinstance(path, JointPath):
         path, seams = _joint_path(path, arm, **shape)
         notes += seams

@@ -12,9 +12,10 @@ import numpy as np
 from inverse_dynamics._core import RobotDescription, effort_options, recorded_names
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.robots.descriptions import parse_description, read_description
+from inverse_dynamics.robots.dh_tables import guess_of
 from inverse_dynamics.robots.located_yaml import read_mapping
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot
-from inverse_dynamics.robots.solvers import make_solver, open_solver
+from inverse_dynamics.robots.solvers import brings_own_model, make_solver, open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -56,6 +57,12 @@ class Arm:
         elif robot.model is not None:
             limits = _model_limits(robot.model)
         return np.array([of_joint.get(name, absent) for of_joint in limits])
+
+    @cached_property
+    def guess(self) -> str:
+        """What is made up of the bodies that torques are computed from: no evidence against a recording."""
+        robot = self.robot
+        return "" if robot.model or brings_own_model(robot) else guess_of(robot.urdf)
 
     @cached_property
     def subtracted(self) -> Solver:

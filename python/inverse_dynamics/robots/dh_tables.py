@@ -13,6 +13,7 @@ Rz(theta + q) Tz(d) Tx(a) Rx(alpha). `type: prismatic` adds q to d. [Craig, Intr
 
 Masses that aren't stated are guesses: equal parts of what is left of the arm's mass, else 2 kg each; and so are
 centers of mass, halfway to the next joint, and moments of inertia. `ids identify` finds what torques tell of them.
+What is guessed is no evidence against a recording: whoever judges asks Arm.guess.
 """
 
 from __future__ import annotations
@@ -71,18 +72,21 @@ def urdf_of_dh(text: str, file: str) -> str:
     return "\n".join([*lines, *_fixed(parent, "tip", (0.0, 0.0, 0.0), 0.0), "</robot>"])
 
 
-def guess_notes(file: Path) -> list[str]:
-    """That masses are guesses, if the file is a table that doesn't state them. Raises RobotError."""
-    if file.suffix not in SUFFIXES:
-        return []
+def guess_of(file: Path | None) -> str:
+    """What the table of a robot lacks, in a sentence; "": nothing, or it's a URDF. Raises RobotError."""
+    if file is None or file.suffix not in SUFFIXES:
+        return ""
     table = parse_mapping(file.read_text(encoding="utf-8-sig"), f"{file}", RobotError)
     rows = [entry.mapping() for entry in table.required("joints").entries()]
     unknown = [f"link{k}" for k, row in enumerate(rows, 1) if row.optional("mass") is None]
-    return [
-        f"{file} doesn't state the mass of {listed(unknown, 20)}: "
-        f"{_guessed_mass(table, rows, f'{file}'):.3g} kg each is a guess, and so are centers of mass and moments "
-        "of inertia; state `mass`, of each link or of the whole arm; `ids identify` finds what a recording tells"
-    ] * bool(unknown)
+    masses = ""
+    if unknown:
+        mass = _guessed_mass(table, rows, f"{file}")
+        masses = f"the mass of {listed(unknown, 20)} ({mass:.3g} kg each is a guess), nor "
+    return (
+        f"{file} doesn't state {masses}centers of mass and moments of inertia, which are guesses: the scale of torques "
+        "rests on the efforts, so masses, loads and scales aren't judged; `ids identify` finds what a recording tells"
+    )
 
 
 def _guessed_mass(table: Mapping, rows: Sequence[Mapping], file: str) -> float:

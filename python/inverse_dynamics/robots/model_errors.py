@@ -5,7 +5,8 @@ arm_model.yaml   the model
 arm_model.json   SHA-256 of the model's file, its friction; independent deviations of the fit's
                  unknowns, of one standard deviation each: the covariance is factor factor'; torques
                  that models fitted to the other data left of held-out data, as an estimator of
-                 external torques has them: its gain [1/s], their period [s], one row per sample
+                 external torques has them: its gain [1/s], their period [s], one row per sample;
+                 the samples that the model was fitted to, as recordings/sketch.py has them
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
 LEAST_GAIN = 10.0
 """1/s, of estimators of external torques, and of held-out errors in the file: contacts end 0.2 s after a force."""
 
-SCHEMA = 3
+SCHEMA = 4
 _KEYS = {"schema", "model_sha256", "friction", "deviations", "held_out"}
 _BAND = {"noise", "level", "share"}
 _NUMBERS = {"fv", "fc", "width"}  # of smooth_coulomb
@@ -70,7 +72,11 @@ def _content(file: Path) -> dict[str, Any]:
         content = json.loads(file.read_text(encoding="utf-8"), parse_int=float)
     except (OSError, ValueError, RecursionError) as error:
         raise _error(file, "JSON of `ids identify`", str(error)) from error
-    schemas: dict[Any, set[str]] = {2: _KEYS, SCHEMA: _KEYS | {"band"}}
+    schemas: dict[Any, set[str]] = {
+        2: _KEYS,
+        3: _KEYS | {"band"},
+        SCHEMA: _KEYS | {"band", "fitted_to"},
+    }
     if not isinstance(content, dict) or schemas.get(content.get("schema")) != content.keys():
         keys = ", ".join(sorted(schemas[SCHEMA]))
         raise _error(file, f"schema {SCHEMA} with the keys {keys}", "others")
@@ -94,7 +100,14 @@ def _content(file: Path) -> dict[str, Any]:
         and min(min(band.values())) >= 0
     ):
         raise _error(file, "band: noise, level and share of each joint, not below zero", "others")
+    sketch = content.setdefault("fitted_to", [])
+    if not (isinstance(sketch, list) and all(map(_is_hash, sketch))):
+        raise _error(file, "fitted_to: hexadecimal numbers of 16 digits", "others")
     return content
+
+
+def _is_hash(text: Any) -> bool:
+    return isinstance(text, str) and re.fullmatch("[0-9a-f]{16}", text) is not None
 
 
 def _columns(rows: Any) -> int:

@@ -27,6 +27,7 @@ from inverse_dynamics.outputs.files import Contents, move_up, write_text, writte
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.bags import write_joint_logs
 from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.robots.dh_tables import guess_of
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.controller import default_gains
@@ -164,7 +165,7 @@ def simulate(
         chosen, source = _begun_by_seed(*_given_trajectory(stated.trajectory, chain), seed)
     checker = ContactChecker(simulated, table=table)
     check_trajectory(simulated, chosen, MotionLimits.of(simulated), checker)
-    notes = [*chain.notes, *checker.notes, *_unused(robot)]
+    notes = [*filter(None, [guess_of(robot.urdf)]), *chain.notes, *checker.notes, *_unused(robot)]
     if seed and trajectory is not None and not sensors.are_random:
         notes.append("the seed has no effect: the trajectory is given, and nothing is random")
     duration = options.get("duration") or chosen.duration

@@ -318,6 +318,16 @@ def test_the_units_of_efforts_are_named(arm):
         assert value is None or cause.value == value
 
 
+def test_limits_that_nobody_stated_are_no_evidence(arm):
+    _, samples, model = arm
+    unknown = np.full(len(samples.joints), np.inf)
+    efforts = compare(per_mille(samples), replace(model, effort_limits=unknown))
+    assert "limits" not in efforts.text
+    limits = np.array([-unknown, unknown])
+    motors = compare(of_motors(samples), replace(model, position_limits=limits))
+    assert "motor_side" not in [cause.kind for cause in motors.causes]
+
+
 def test_gravity_that_is_taken_off_is_found(arm):
     name, samples, model = arm
     gravity = model.gravity(samples.flat(samples.q)).reshape(samples.q.shape)
@@ -367,12 +377,30 @@ def test_somebody_who_guides_the_arm_is_found(arm):
     assert only(compare(recorded(name, friction=-0.1), model)).kind == "guided"
 
 
-def test_a_model_without_friction_is_told_so(arm):
+@pytest.mark.parametrize("friction", [0.06, 0.15])
+def test_a_model_without_friction_is_told_so(arm, friction):
     name, _, model = arm
-    samples = recorded(name, friction=0.15)
+    samples = recorded(name, friction=friction)
     assert only(compare(samples, model)).kind == "friction"
     rubs = replace(model, friction=lambda q, qd: np.zeros_like(qd))
     assert compare(samples, rubs).causes == ()
+
+
+@pytest.mark.parametrize(("friction", "told"), [(0.0, True), (0.02, True), (0.08, False)])
+def test_friction_that_efforts_lack_is_told(arm, friction, told):
+    name, samples, model = arm
+    span = np.ptp(samples.measured, axis=(0, 1))
+
+    def rubbing(q, qd):
+        return 0.1 * span * (np.tanh(qd / 0.05) + 0.3 * qd)
+
+    rubs = replace(
+        model,
+        friction=rubbing,
+        torques=lambda *motion: model.torques(*motion) + rubbing(*motion[:2]),
+    )
+    found = compare(recorded(name, friction=friction), rubs)
+    assert ["--no-friction" in cause.remedy for cause in found.causes] == [True] * told
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.02])

@@ -72,9 +72,9 @@ def test_no_file_is_no_error(model):
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (lambda content: content.pop("friction"), "expected schema 3 with the keys"),
-        (lambda content: content.update(schema=1), "expected schema 3 with the keys"),
-        (lambda content: content.update(more=1), "expected schema 3 with the keys"),
+        (lambda content: content.pop("friction"), "expected schema 4 with the keys"),
+        (lambda content: content.update(schema=1), "expected schema 4 with the keys"),
+        (lambda content: content.update(more=1), "expected schema 4 with the keys"),
         (lambda content: content["deviations"][0].pop(), "expected deviations: rows"),
         (lambda content: content["deviations"].clear(), "expected deviations: rows"),
         (lambda content: content["deviations"][0].__setitem__(0, "x"), "expected deviations: rows"),
@@ -98,6 +98,7 @@ def test_no_file_is_no_error(model):
         (lambda content: content["band"].pop("level"), "expected band: noise, level"),
         (lambda content: content["band"]["level"].pop(), "expected band: noise, level"),
         (lambda content: content["band"].update(share=[-0.1] * 6), "expected band: noise, level"),
+        (lambda content: content.update(fitted_to=["x"]), "expected fitted_to: hexadecimal"),
     ],
 )
 def test_a_damaged_file_is_refused(model, change, text):
@@ -152,7 +153,7 @@ def test_offsets_of_another_day_are_a_share_of_the_range_of_efforts():
 
 def test_the_band_of_a_recording_is_made_in_parts(model, monkeypatch):
     solver = Solver(RIGID_BODY, model=str(model))
-    band, _ = bands.read_band(model, solver)
+    band, _, _ = bands.read_band(model, solver)
     monkeypatch.setattr(bands, "_ROWS", 7)
     np.testing.assert_array_equal(
         band.of_recording(solver, *states()), band.half_widths(solver, *states())

@@ -15,9 +15,12 @@ from example_robots import JOINTS, URDF
 from identified_arms import arm, identification, predicted_torques, simulated_torques
 from pages import data_of
 
-from inverse_dynamics import FastModel, Solver, evaluate, write_joint_logs
+from inverse_dynamics import FastModel, Solver, evaluate, read_joint_log, write_joint_logs
 from inverse_dynamics._core import RobotDescription
+from inverse_dynamics.comparison.comparison import compare
 from inverse_dynamics.errors import RobotError, SolverError
+from inverse_dynamics.evaluation.evaluation import FITTED
+from inverse_dynamics.evaluation.files import read_evaluation
 from inverse_dynamics.evaluation.ranges import outside_of_seen
 from inverse_dynamics.identification import files as identifications
 from inverse_dynamics.identification.files import model_file_text, write_identification
@@ -27,6 +30,7 @@ from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.identification.universal_robots import friction_request
 from inverse_dynamics.outputs.plain import plain
 from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.recordings.sketch import sketch_of
 from inverse_dynamics.robots import robot_files
 from inverse_dynamics.robots.link_parameters import turned
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot
@@ -49,6 +53,25 @@ def tuesday(tmp_path):
     log = JointLog(JOINTS, stamps, stamps, q, qd, simulated_torques(q, qd, qdd, seed=7))
     write_joint_logs(tmp_path / "tuesday", {log.topic: log})
     return tmp_path / "tuesday"
+
+
+def test_an_evaluation_of_what_the_model_was_fitted_to_says_so(found, tuesday, tmp_path):
+    fitted = replace(found, sketch=sketch_of(read_joint_log(tuesday)))
+    files = write_identification(fitted, tmp_path / "arm.yaml")
+    q, qd, qdd, stamps = motion()
+    log = JointLog(JOINTS, stamps, stamps, q, qd, simulated_torques(q, qd, qdd, seed=8))
+    write_joint_logs(tmp_path / "wednesday", {log.topic: log})
+    assert not evaluate(tmp_path / "wednesday", files.robot).fitted
+    evaluate(tuesday, files.robot, start=1.0, end=4.0).save(tmp_path / "same")
+    evaluate(tuesday, "ur10_simulated", start=1.0, end=4.0).save(tmp_path / "urdf")
+    same, urdf = map(read_evaluation, (tmp_path / "same", tmp_path / "urdf"))
+    assert (same.fitted, urdf.fitted) == (True, False)
+    assert (same.numbers()["fitted"], same.notes[-1]) == (True, FITTED)
+    compared = compare([same, urdf], ["new", "old"])
+    assert tuple(compared.table().headings[2:]) == ("new *", "old")
+    assert compared.table().note == f"* {FITTED}"
+    assert [run["fitted"] for run in compared.numbers()["runs"]] == [True, False]
+    assert FITTED in compared.page()
 
 
 @pytest.fixture

@@ -14,12 +14,15 @@ from example_recordings import motion
 from example_robots import JOINTS, RIGID_BODY
 from identified_arms import identification, simulated_torques
 
-from inverse_dynamics import Solver, evaluate, load_robot, write_joint_logs
+from inverse_dynamics import Solver, evaluate, identify, load_robot, write_joint_logs
 from inverse_dynamics.diagnosis.rival import PAGE
 from inverse_dynamics.identification.findings import findings_of_errors
 from inverse_dynamics.identification.refusals import check_recordings, check_result
 from inverse_dynamics.identification.result import IdentificationError
+from inverse_dynamics.payload.payload import PayloadError, estimate_payload
 from inverse_dynamics.recordings.joint_log import JointLog
+from inverse_dynamics.robots.arm import Arm
+from inverse_dynamics.robots.robots import robot_of_description
 
 ROBOT = "ur10_simulated"
 RATE = 250  # Hz, of motion()
@@ -89,6 +92,69 @@ def test_a_prismatic_joint_that_hardly_moves_does_so_in_metres(log, tmp_path):
     assert "wrist_1_joint: expected every joint to move by 0.1 rad (prismatic: 0.1 m) or" in text
     assert " m, so that neither" in text
     assert " rad, so that neither" in str(reason([evaluation]))
+
+
+DH = (
+    (0, 90, 0.1273),
+    (-0.612, 0, 0),
+    (-0.5723, 0, 0),
+    (0, 90, 0.163941),
+    (0, -90, 0.1157),
+    (0, 0, 0.0922),
+)
+
+
+@pytest.fixture(params=["", "mass: 30\n"], ids=["no masses", "mass of the arm"])
+def guessed(request, tmp_path):
+    """The UR10 by its geometry alone."""
+    rows = (
+        f"  - {{name: {name}, a: {a}, alpha: {alpha}, d: {d}}}\n"
+        for name, (a, alpha, d) in zip(JOINTS, DH, strict=True)
+    )
+    file = tmp_path / "dh.yaml"
+    file.write_text(f"convention: standard\ndegrees: true\njoints:\n{''.join(rows)}{request.param}")
+    return replace(robot_of_description(file), joints=JOINTS)
+
+
+@pytest.mark.parametrize("scale", [1.0, 1 / 12, 12.0])
+def test_masses_that_are_guesses_are_no_evidence(log, guessed, tmp_path, scale):
+    scaled = replace(log, effort=scale * log.effort)
+    evaluation = evaluated(tmp_path, scaled, guessed)
+    assert evaluation.diagnosis == ()
+    assert not evaluation.effort.verdict.sure
+    assert "% of the range" not in evaluation.effort.summary
+    told = [note for note in evaluation.explained.notes if "rests on the efforts" in note]
+    assert len(told) == 1
+    found = identify([tmp_path / "recording"], guessed, effort_is="torque", blocks=3)
+    assert found.rmse("identified") < 0.25 * scale  # N m; the noise is 0.1
+    assert [note for note in found.notes if "rests on the efforts" in note] == told
+    with pytest.raises(PayloadError, match="no load can be told from masses that are guesses"):
+        estimate_payload(tmp_path / "recording", guessed)
+    found.save(tmp_path / "arm.yaml")
+    assert not Arm(load_robot(tmp_path / "arm.yaml")).guess  # the data have told the masses
+    assert evaluate(tmp_path / "recording", tmp_path / "arm.yaml").fitted
+
+
+@pytest.mark.parametrize("guessed", [""], indirect=True)
+def test_a_description_that_is_far_off_counts_as_little_as_the_data_choose(log, guessed, tmp_path):
+    write_joint_logs(tmp_path / "recording", {log.topic: replace(log, effort=100 * log.effort)})
+    found = identify([tmp_path / "recording"], guessed, effort_is="torque", blocks=3)
+    assert found.prior_strength < 10
+    assert found.rmse("identified") < 100 * 0.25
+
+
+def test_motions_are_judged_though_masses_are_guesses(log, guessed, tmp_path):
+    still = evaluated(tmp_path, replace(log, qd=0 * log.qd), guessed)
+    assert [cause.kind for cause in still.diagnosis] == ["velocity"]
+    (tmp_path / "degrees").mkdir()
+    turned = evaluated(tmp_path / "degrees", replace(log, q=np.degrees(log.q)), guessed)
+    assert [cause.kind for cause in turned.diagnosis] == ["degrees"]
+
+
+def test_gravity_of_guesses_is_not_added_to_efforts(log, guessed, tmp_path):
+    write_joint_logs(tmp_path / "recording", {log.topic: log})
+    with pytest.raises(IdentificationError, match="gravity that the robot subtracts isn't known"):
+        identify([tmp_path / "recording"], guessed, effort_is="torque_without_gravity")
 
 
 def without_gravity(log: JointLog) -> JointLog:
@@ -199,13 +265,21 @@ def test_efforts_that_are_a_small_part_of_the_torques(found):
         check_result(replace(small, held_out=found.held_out))
 
 
-def test_a_joint_that_the_description_predicts_better_is_a_finding():
-    held = {"urdf": np.array([1.0, 0.93]), "identified": np.array([0.5, 1.06])}
+@pytest.mark.parametrize(
+    ("start", "said"),
+    [
+        ("urdf", "the description without friction has 0.93"),
+        ("present", "the present model has 0.93"),
+    ],
+)
+def test_a_joint_that_was_predicted_better_before_is_a_finding(start, said):
+    held = {"urdf": np.array([1.0, 2.0]), "identified": np.array([0.5, 1.06])}
+    held[start] = np.array([1.0, 0.93])
     fitter = SimpleNamespace(joint_names=("a", "b"), changes=("", ""))
     (finding,) = findings_of_errors(fitter, ("link_a", "link_b"), held, ("N m", "N m"))
     assert (finding.kind, finding.joint) == ("worse", "b")
     assert "b: 1.06 N m on blocks held out" in finding.text
-    assert "has 0.93" in finding.text
+    assert said in finding.text
 
 
 def test_friction_of_the_wrong_sign(found):

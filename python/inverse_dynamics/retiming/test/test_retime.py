@@ -17,7 +17,7 @@ from inverse_dynamics.retiming.page import retime_page, spans
 from inverse_dynamics.retiming.retiming import described_limits, sample_times, torque_limit
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.motion_energy import MotionEnergy
-from inverse_dynamics.robots.robots import with_changes
+from inverse_dynamics.robots.robots import robot_of_description, with_changes
 
 WAYPOINTS = np.array(
     [
@@ -63,6 +63,21 @@ def test_motion_visits_the_waypoints_at_rest_at_both_ends(fastest):
     assert (np.abs(fastest.use) <= 1.005).all()
     assert (np.abs(fastest.qd) <= 1.005 * fastest.limits.velocity).all()
     assert fastest.seconds_saved > 0.0
+
+
+def test_masses_that_are_guesses_are_told(tmp_path):
+    table = tmp_path / "dh.yaml"
+    table.write_text(
+        "convention: modified\njoints: [{a: 0, alpha: 0, d: 1}, {a: 1, alpha: 0, d: 0}]\n"
+    )
+    robot = robot_of_description(table)
+    limits = MotionLimits(torque=[100.0], velocity=[1.0])
+    motion = retime([[0.0, 0.0], [1.0, -1.0]], robot, limits=limits)
+    assert "the mass of link1, link2 (2 kg each is a guess)" in motion.notes[0]
+    states = np.column_stack([motion.time, motion.q, motion.qd])
+    names = "time,position.joint1,position.joint2,velocity.joint1,velocity.joint2"
+    np.savetxt(tmp_path / "way.csv", states, delimiter=",", header=names, comments="")
+    assert motion.notes[0] in trajectory_torques(tmp_path / "way.csv", robot).notes
 
 
 def test_efforts_are_those_of_the_solver(fastest):

@@ -8,8 +8,10 @@ import pytest
 
 from inverse_dynamics import FastModel, load_robot
 from inverse_dynamics.errors import RobotError
+from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.descriptions import read_description
-from inverse_dynamics.robots.dh_tables import guess_notes
+from inverse_dynamics.robots.dh_tables import guess_of
+from inverse_dynamics.robots.robots import robot_of_description
 
 # Published by the makers: Universal Robots, "DH parameters", and Franka, "Robot and interface
 # specifications".
@@ -70,6 +72,15 @@ def test_limits_and_names_are_those_of_the_table(tmp_path):
     assert '<joint name="joint1" type="continuous">' in text
 
 
+def test_limits_that_a_table_lacks_are_none(tmp_path):
+    file = tmp_path / "arm.yaml"
+    file.write_text(UR10)
+    arm = Arm(robot_of_description(file))
+    assert arm.limit("effort", np.inf).tolist() == [np.inf] * 5 + [56.0]
+    assert arm.limit("velocity", np.inf).tolist() == [np.inf] * 5 + [3.0]
+    assert arm.limit("upper", np.inf)[0] == np.inf
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
@@ -92,9 +103,10 @@ def test_masses_that_are_not_stated_are_parts_of_the_arms_mass_and_said_to_be_gu
     file = tmp_path / "arm.yaml"
     file.write_text(UR10)
     assert read_description(file).count('<mass value="2.0"/>') == 6
-    assert "mass of link1, link2, link3, link4, link5, link6: 2 kg each" in guess_notes(file)[0]
+    assert "mass of link1, link2, link3, link4, link5, link6 (2 kg each" in guess_of(file)
     file.write_text(UR10.replace("d: 0.1273", "d: 0.1273, mass: 7.5") + "mass: 30\n")
     assert read_description(file).count('<mass value="4.5"/>') == 5
-    assert "mass of link2, link3, link4, link5, link6: 4.5 kg each" in guess_notes(file)[0]
+    assert "mass of link2, link3, link4, link5, link6 (4.5 kg each" in guess_of(file)
     file.write_text(UR10.replace("alpha", "mass: 1, alpha"))
-    assert guess_notes(file) == []
+    assert f"{file} doesn't state centers of mass and moments of inertia" in guess_of(file)
+    assert guess_of(load_robot("ur10_simulated").urdf) == ""
