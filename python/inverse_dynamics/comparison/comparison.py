@@ -18,6 +18,7 @@ from inverse_dynamics.evaluation.page import report_run
 from inverse_dynamics.show.page import render_page
 from inverse_dynamics.show.result import PAGE, ResultDirectory, files_of
 from inverse_dynamics.show.tables import ReportTable, of_joints
+from inverse_dynamics.wording import solver_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,9 +68,9 @@ class Comparison(ResultDirectory):
 
     def table(self) -> ReportTable:
         """Root mean square errors, one column per run."""
-        title = f"RMSE of {' and '.join(self.labels)}"
         columns = dict(zip(self.labels, self.rmse, strict=True))
-        return of_joints(title, self.joint_names, self.evaluations[0].units, columns, means=columns)
+        units = self.evaluations[0].units
+        return of_joints("RMSE of each joint", self.joint_names, units, columns, means=columns)
 
     def plot(self) -> Figure:
         """Measured torque and that of each run over time, and the runs' errors, one row per joint."""
@@ -161,7 +162,7 @@ def _facets(evaluation: Evaluation) -> dict[str, str]:
     robot = evaluation.robot
     model = robot.model or robot.urdf
     return {
-        "solver": robot.plugin.partition("/")[2],
+        "solver": solver_name(robot.plugin),
         "model": "" if model is None else model.name,
         "friction": "" if robot.friction else "without friction",
         "accelerations": evaluation.accelerations.summary,
