@@ -463,7 +463,10 @@ def test_paper_shows_the_plots(page, tmp_path):
 
 def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, capsys, monkeypatch):
     monkeypatch.delenv("IDS_DATA_DIR", raising=False)
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))  # where `ids data` has put nothing
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    (tmp_path / "inverse_dynamics/bags").mkdir(
+        parents=True
+    )  # as `ids data` without network leaves it
     out = tmp_path / "demo"
     assert cli.main(["demo", "--quick", "--out", str(out)]) == 0
     printed = " ".join(capsys.readouterr().out.split())
