@@ -78,9 +78,9 @@ def show(
         document = {"schema": SCHEMA, "verb": verb, "written": paths, "result": result}
         print(json.dumps(plain(document), indent=2, allow_nan=False))
         return
-    console, lines = Screen(), [*texts_of(lines)]
-    widest = max((len(line[0]) for line in lines if isinstance(line, tuple)), default=0)
-    for line in lines:
+    console, texts = Screen(), list(texts_of(lines))
+    widest = max((len(line[0]) for line in texts if isinstance(line, tuple)), default=0)
+    for line in texts:
         if isinstance(line, tuple):
             key, text = line
             prefix = f"{key:<{max(14, widest)}} " if key else ""
