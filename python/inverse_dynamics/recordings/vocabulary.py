@@ -28,8 +28,8 @@ _WORDS = {
 _WEAK_WORDS = {
     CURRENT: "current currents cur curr i iq amps ampere amperes",
     POSITION: "state ang",
-    VELOCITY: "v angvel",
-    ACCELERATION: "a angacc",
+    VELOCITY: "v",
+    ACCELERATION: "a",
 }
 # The first ones are preferred.
 _TIME = (

@@ -680,7 +680,7 @@ def test_a_slow_clock_is_mended_as_the_message_says(tmp_path, torques):
 
 def test_files_are_known_by_what_their_names_say(tmp_path):
     time = 0.1 * np.arange(21)
-    files = [tmp_path / f"excit_{name}.txt" for name in ("ang", "angvel", "trq")]
+    files = [tmp_path / f"excit_{name}_record.txt" for name in ("ang", "vel", "torque")]
     for file, values in zip(files, (np.sin(time), np.cos(time), 10 * time), strict=True):
         np.savetxt(file, np.column_stack([values, values]))
     (joined,) = parts_joined(files)
