@@ -116,6 +116,20 @@ find_recordings() {
   export IDS_DATA_DIR
 }
 
+# fetch_recordings [ARGUMENT...] fetches those of real robots with `ids data`, unless IDS_DATA_DIR names others, and
+# says from where, or why it can't.
+fetch_recordings() {
+  local told last status=0
+  [ -z "${IDS_DATA_DIR:-}" ] || return 0
+  told=$(timeout 20 ids data "$@" 2>&1 >/dev/null) || status=$?
+  last=${told##*$'\n'}
+  case $status in
+    0) say "${told%%$'\n'*}" ;;
+    124) say "No recordings of real robots: no answer within 20 s" ;;
+    *) last=${last##*error: } && say "No recordings of real robots: ${last%%;*}" ;;
+  esac
+}
+
 # Sources what was built: libraries, plugins, the Python package and the `ids` command.
 enter_install() {
   enter_venv

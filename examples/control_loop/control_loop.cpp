@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
+#include <inverse_dynamics_control/joint_parameters.hpp>
 #include <inverse_dynamics_solver/forward_dynamics.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
@@ -57,7 +58,7 @@ int main(int argc, char** argv) {
   const double period = 1e-3;                        // s
   const Gains gains = Gains::uniform(n, 20.0, 1.0);  // 20 rad/s, critically damped
   LawOptions options;
-  options.limits.effort = Eigen::VectorXd::Constant(n, 330.0);  // N m
+  options.limits.effort = describedLimits(urdf, solver->jointNames()).effort;  // N m
   options.damping = dampingFor(*solver, Eigen::VectorXd::Zero(n), 5.0, period);
   ComputedTorque law(solver, gains, options);
   Eigen::VectorXd start(6), tau(n);

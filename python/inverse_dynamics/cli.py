@@ -100,7 +100,7 @@ def _short_help(parser: argparse.ArgumentParser, examples: list[str]) -> list[st
     lines = [f"usage: {usage}", "", parser.description or ""]
     lines += ["", *examples] if examples else []
     for group in parser._action_groups:
-        options = [_usage(a) for a in group._group_actions if a.option_strings]
+        options = [_usage(a) for a in group._group_actions if a.option_strings and a in actions]
         if options:
             lines.append(f"{group.title}: {', '.join(options)}")
     lines.append(f"all of it: {parser.prog} --help")
@@ -249,10 +249,10 @@ def _run(given: list[str]) -> int:
     try:
         options = parser.parse_args(given)
         options.run(options)
-        if told := replaced():
-            _say(told)
         if sys.stdout is not None:
             sys.stdout.flush()
+        if told := replaced():
+            _say(told)
     except BrokenPipeError:
         raise
     except UserError as error:
@@ -325,7 +325,9 @@ def _shown(text: str) -> str:
 
 
 def _say(text: str) -> None:
-    """A message to the user, on stderr."""
+    """A message to the user, on stderr, after what stands on stdout."""
+    with suppress(OSError, ValueError, AttributeError):
+        sys.stdout.flush()
     with suppress(OSError, ValueError):
         print(_shown(f"ids: {text}"), file=sys.stderr, flush=True)
 

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -156,6 +157,15 @@ void readAxis(const UrdfElement& element, RobotDescription::Joint& joint) {
   }
 }
 
+// The limit of a velocity or effort. Some exporters write -1 where there is none.
+double greatest(const UrdfElement& limit, const char* key) {
+  const double value = limit.number(key);
+  if (value >= 0) return value;
+  limit.warn("<limit> " + std::string(key) + ": " + limit.text(key) +
+             " is taken as no limit; state the limit, or 0 where it is unknown");
+  return std::numeric_limits<double>::infinity();
+}
+
 void readLimits(const UrdfElement& element, RobotDescription::Joint& joint) {
   const bool needed = joint.type == Type::kRevolute || joint.type == Type::kPrismatic;
   const auto limit =
@@ -163,8 +173,8 @@ void readLimits(const UrdfElement& element, RobotDescription::Joint& joint) {
              : element.child("limit");
   if (!limit) return;
   limit->reportUnknown(kLimit);
-  joint.limits.effort = limit->number("effort");
-  joint.limits.velocity = limit->number("velocity");
+  joint.limits.effort = greatest(*limit, "effort");
+  joint.limits.velocity = greatest(*limit, "velocity");
   const double lower = limit->number("lower", 0);
   const double upper = limit->number("upper", 0);
   if (joint.type != Type::kContinuous) {

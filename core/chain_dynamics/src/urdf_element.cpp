@@ -96,13 +96,15 @@ ModelError UrdfElement::error(const std::string& what, const std::string& expect
 
 std::string UrdfElement::text(const char* key) const {
   if (const char* value = element_->Attribute(key)) return value;
-  std::vector<std::string> given;
+  std::vector<std::string> unknown;
   for (auto* other = element_->FirstAttribute(); other != nullptr; other = other->Next()) {
-    given.emplace_back(other->Name());
+    if (known_ == nullptr || !contains(known_->attributes, other->Name())) {
+      unknown.emplace_back(other->Name());
+    }
   }
-  const std::string similar = nearestName(key, given);
+  const std::string similar = nearestName(key, unknown);
   throw error(tag(), "attribute '" + std::string(key) + "'", "none",
-              similar.empty() ? "" : "is it misspelt as '" + similar + "'?");
+              similar.empty() ? "add it" : "is it misspelt as '" + similar + "'?");
 }
 
 double UrdfElement::number(const char* key) const {
@@ -191,6 +193,7 @@ UrdfElement UrdfElement::requiredChild(const char* child_tag, const std::string&
 // Unknown names
 
 void UrdfElement::reportUnknown(const Vocabulary& known) const {
+  known_ = &known;
   reportAttributes(known);
   reportChildren(known);
 }

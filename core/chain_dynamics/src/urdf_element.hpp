@@ -84,7 +84,7 @@ class UrdfElement {
   std::optional<UrdfElement> child(const char* child_tag) const;
   UrdfElement requiredChild(const char* child_tag, const std::string& remedy) const;
 
-  /// Warns of children, attributes and text that nothing reads.
+  /// Warns of children, attributes and text that nothing reads. known: outlives the element.
   void reportUnknown(const Vocabulary& known) const;
 
   /// A number of a robot's size; beyond it a warning, and an error where products would overflow.
@@ -113,6 +113,7 @@ class UrdfElement {
   const tinyxml2::XMLElement* element_;
   std::string item_;
   Findings* findings_;
+  mutable const Vocabulary* known_ = nullptr;  // after reportUnknown()
 };
 
 }  // namespace v2

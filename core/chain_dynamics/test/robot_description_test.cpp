@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <ctime>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -344,6 +345,28 @@ TEST(RobotDescription, MissingNamesAreFoundAmongTheMisspelt) {
               HasSubstr("expected attribute 'value', got none; is it misspelt as 'vlaue'?"));
   EXPECT_THAT(urdfError(robot(link("base") + joint("j", "fixed", "bsae", "base", ""))),
               HasSubstr("expected a link of the robot, got 'bsae'; did you mean base?"));
+}
+
+TEST(RobotDescription, KnownAttributesAreNoMisspeltOnes) {
+  const std::string urdf = hinge(inertial());
+  const std::size_t at = urdf.find(" ixy=");
+  const std::string without = urdf.substr(0, at) + urdf.substr(urdf.find(" ixz=", at));
+  EXPECT_THAT(urdfError(without), HasSubstr("expected attribute 'ixy', got none; add it"));
+  EXPECT_EQ(urdfError(without.substr(0, at) + " ixy='0'" + without.substr(at)), "no error");
+}
+
+TEST(RobotDescription, LimitsOfMinusOneAreNoLimits) {
+  const auto of = [](const char* limit) {
+    return hinge(inertial(), "<limit velocity='2' effort='" + std::string(limit) + "'/>");
+  };
+  const std::string urdf = of("-1");
+  EXPECT_THAT(warnings(urdf),
+              ElementsAre(HasSubstr("<limit> effort: -1 is taken as no limit; state "
+                                    "the limit, or 0 where it is unknown")));
+  EXPECT_EQ(chainFromUrdf(urdf).joints()[0].limits.effort, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(chainFromUrdf(urdf).joints()[0].limits.velocity, 2);
+  EXPECT_THAT(warnings(of("0")), IsEmpty());
+  EXPECT_THAT(warnings(of("5")), IsEmpty());
 }
 
 TEST(RobotDescription, RepeatedAttributesAreAnError) {

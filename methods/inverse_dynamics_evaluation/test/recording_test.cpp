@@ -34,6 +34,7 @@ namespace fs = std::filesystem;
 using inverse_dynamics_evaluation::RecordingError;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -232,6 +233,37 @@ TEST_P(RecordingTest, ReadsFilesWithoutMetadataInTheOrderOfTheirNumbers) {
 
   fs::rename(run + "/run_3" + kind, run + "/other" + kind);
   EXPECT_THAT(errorOfReading(run), HasSubstr("has no metadata.yaml; give one of its files"));
+}
+
+TEST_P(RecordingTest, ReadsRenamedFilesAsTheErrorSays) {
+  const std::string bag = write("bag", evenly(10));
+  const std::string other = bag + "/other" + file("bag").extension().string();
+  fs::rename(file("bag"), other);
+  EXPECT_THAT(errorOfReading(bag), EndsWith("; if it was renamed, give " + other + " itself"));
+  EXPECT_EQ(rest(*Recording(other).jointStates()).size(), 10U);
+  const std::string confused = bag + (GetParam() == Storage::kMcap ? "/bag.db3" : "/bag.mcap");
+  fs::rename(other, confused);
+  EXPECT_EQ(rest(*Recording(confused).jointStates()).size(), 10U);
+}
+
+TEST_P(RecordingTest, ReadsMcapWhateverItsProfile) {
+  if (GetParam() != Storage::kMcap) GTEST_SKIP() << "only MCAP has profiles";
+  const std::string bag = write("bag", evenly(10));
+  std::string content = withoutChecksum(contentOf(file("bag")));
+  const std::size_t at = content.find("ros2");
+  put(file("bag"), content.replace(at, 4, "mine"));
+  EXPECT_EQ(rest(*Recording(bag).jointStates()).size(), 10U);
+  // Without a profile; the library's name takes its place.
+  const std::string length(1, static_cast<char>(content[at + 4] + 4));
+  put(file("bag"),
+      content.replace(at - 4, 8, std::string(4, '\0') + length + std::string(3, '\0')));
+  EXPECT_EQ(rest(*Recording(bag).jointStates()).size(), 10U);
+}
+
+TEST_P(RecordingTest, ReadsMetadataOfNewerVersions) {
+  const std::string bag = write("bag", evenly(10));
+  replace(directory_ / "bag/metadata.yaml", "version: 9", "version: 12\n  new_key: [1, 2]");
+  EXPECT_EQ(rest(*Recording(bag).jointStates()).size(), 10U);
 }
 
 TEST_P(RecordingTest, ReadsFilesOfASplitRecordingOneAfterAnother) {

@@ -15,10 +15,11 @@ import numpy as np
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.evaluation import FITTED
 from inverse_dynamics.evaluation.figure import run_color, runs_figure
-from inverse_dynamics.evaluation.page import report_run
-from inverse_dynamics.show.page import render_page
+from inverse_dynamics.evaluation.page import assumptions, report_run
+from inverse_dynamics.show.page import ReportSummary, render_page
 from inverse_dynamics.show.result import PAGE, ResultDirectory, files_of
 from inverse_dynamics.show.tables import ReportTable, of_joints
+from inverse_dynamics.wording import solver_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -73,7 +74,6 @@ class Comparison(ResultDirectory):
 
     def table(self) -> ReportTable:
         """Root mean square errors, one column per run."""
-        title = f"RMSE of {' and '.join(self.labels)}"
         headings = [
             f"{label} *" if e.fitted else label
             for label, e in zip(self.labels, self.evaluations, strict=True)
@@ -81,7 +81,7 @@ class Comparison(ResultDirectory):
         columns = dict(zip(headings, self.rmse, strict=True))
         note = f"* {FITTED}" if any(e.fitted for e in self.evaluations) else ""
         units = self.evaluations[0].units
-        return of_joints(title, self.joint_names, units, columns, note, means=columns)
+        return of_joints("RMSE of each joint", self.joint_names, units, columns, note, means=columns)
 
     def plot(self) -> Figure:
         """Measured torque and that of each run over time, and the runs' errors, one row per joint."""
@@ -89,28 +89,42 @@ class Comparison(ResultDirectory):
         return runs_figure(self.evaluations, self.labels, styles, (self.title,))
 
     def page(self) -> str:
-        """The page as text."""
-        return render_page(self.title, [self.report_run()])
+        """The page as text: the table, then torques of all runs."""
+        run = self.report_run("Torques")
+        run = replace(run, tables=(), notes=(), assumptions=(), judged=False)
+        notes = dict.fromkeys(note for e in self.evaluations for note in e.explained.notes)
+        found = ReportSummary(self.table(), "What was assumed", self._facts(), list(notes))
+        return render_page(self.title, [run], summary=found)
 
-    def report_run(self, title: str = "", *, shown: bool = True) -> ReportRun:
+    def report_run(self, title: str, *, shown: bool = True) -> ReportRun:
         """The first evaluation on a page, with the torques of the others to choose; shown: they are at first."""
         first, *others = self.evaluations
         name, *labels = self.labels
-        run = report_run(first, title or first.bag.name)
-        plugins = zip(labels, (other.robot.plugin for other in others), strict=True)
+        run = report_run(first, title)
         return replace(
             run,
             name=name,
             others={label: e.computed for label, e in zip(labels, others, strict=True)},
             others_shown=shown,
             tables=[self.table(), *run.tables],
-            assumptions=[*run.assumptions, *plugins],
+            assumptions=self._facts(),
         )
+
+    def _facts(self) -> list[tuple[str, str]]:
+        """What was assumed: once what all runs have in common."""
+        facts = [dict(assumptions(evaluation)) for evaluation in self.evaluations]
+        rows: list[tuple[str, str]] = []
+        for name in dict.fromkeys(name for of_run in facts for name in of_run):
+            texts = [of_run.get(name, "none") for of_run in facts]
+            runs = zip(self.labels, texts, strict=True)
+            same = len(set(texts)) == 1
+            rows += [(name, texts[0])] if same else [(f"{name}, {run}", text) for run, text in runs]
+        return rows
 
     @property
     def title(self) -> str:
-        """Recording and labels."""
-        return f"{self.evaluations[0].bag.name}: {' against '.join(self.labels)}"
+        """Robot, and how many runs."""
+        return f"{self.evaluations[0].robot.name}: {len(self.labels)} runs compared"
 
     @property
     def rmse(self) -> Floats:
@@ -173,7 +187,7 @@ def _facets(evaluation: Evaluation) -> dict[str, str]:
     robot = evaluation.robot
     model = robot.model or robot.urdf
     return {
-        "solver": robot.plugin.partition("/")[2],
+        "solver": solver_name(robot.plugin),
         "model": "" if model is None else model.name,
         "friction": "" if robot.friction else "without friction",
         "accelerations": evaluation.accelerations.summary,

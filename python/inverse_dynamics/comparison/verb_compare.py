@@ -34,7 +34,7 @@ def declare(options: Options) -> None:
     options.runs("results of `ids evaluate`, two or more")
     options.add(
         "--labels A,B,...",
-        "names of the runs (default: what differs between them)",
+        "names of the runs (default: their directories)",
         names,
         default=(),
     )
@@ -54,7 +54,10 @@ def run(arguments: argparse.Namespace) -> None:
     out, overwrite = arguments.out, arguments.overwrite
     if out is not None:
         Comparison.check(out, overwrite=overwrite, inputs=arguments.runs)
-    comparison = compare([read_evaluation(run) for run in arguments.runs], arguments.labels)
+    names = [run.absolute().name for run in arguments.runs]
+    directories = names if len({*names}) == len(names) else [f"{run}" for run in arguments.runs]
+    runs = [read_evaluation(run) for run in arguments.runs]
+    comparison = compare(runs, arguments.labels or directories)
     lines = [*comparison.lines()]
     if out is not None:
         comparison.save(out, overwrite=overwrite, figures=arguments.figures)

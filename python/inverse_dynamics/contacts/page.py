@@ -39,15 +39,19 @@ def contact_page(contacts: Contacts) -> str:
         left_out=contacts.interruptions,
         tables=(),
         notes=(),
-        cause="",
+        judged=False,
     )
     facts = [
         ("estimator", f"{contacts.estimator}, {contacts.gain:.3g} 1/s"),
         ("without contact", contacts.quiet),
         ("effort means", evaluation.effort.summary),
     ]
-    notes = list(contacts.notes)
-    more = [threshold_table(contacts)]
-    found = ReportSummary(contact_table(contacts), "How contacts were found", facts, notes, more)
+    found = ReportSummary(
+        contact_table(contacts),
+        "How contacts were found",
+        facts,
+        contacts.notes,
+        below=[threshold_table(contacts)],
+    )
     title = f"{evaluation.robot.description or evaluation.robot.name}: what touched it"
     return render_page(title, [run], summary=found)

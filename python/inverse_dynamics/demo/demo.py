@@ -73,7 +73,7 @@ def find_recordings() -> Path | None:
     Raises UserError: IDS_DATA_DIR is set, but they aren't there.
     """
     directory = data_directory() / "bags"
-    if directory.is_dir():
+    if directory.is_dir() and any(directory.iterdir()):  # empty where the network failed
         return directory
     if not os.environ.get("IDS_DATA_DIR"):
         return None

@@ -49,16 +49,15 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.demo.demo import TITLES, find_recordings, run_demo, summary
     from inverse_dynamics.evaluation.tables import robots_table
-    from inverse_dynamics.terminal.screen import Screen, progress_bar, show
+    from inverse_dynamics.terminal.screen import announce, progress_bar, show
 
-    console = Screen(stderr=arguments.json)
     with progress_bar() as progress:
         demo = run_demo(
             arguments.out,
             recordings=arguments.recordings or find_recordings(),
             overwrite=arguments.overwrite,
             quick=arguments.quick,
-            say=lambda text: console.print(f"{text} ..."),
+            say=announce,
             progress=progress,
         )
     out, comparison = demo.directory, demo.comparison

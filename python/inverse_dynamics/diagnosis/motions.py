@@ -116,7 +116,8 @@ def _by_clock(
         "A clock at the wrong speed",
         f"positions change {rate:.3g} times as fast as velocities say, in every joint"
         + (f": time is in {unit}" if unit else ""),
-        "record again with a clock that runs right; that of reception may do: ids evaluate --clock receive",
+        "record again with a clock that runs right; until then, of a recording of ROS the clock of reception may do: "
+        f"--clock receive, and of a table: --scale time={printed(rate)}",
         value=rate,
     )
     return finding, replace(samples, time=samples.time * rate, qdd=samples.qdd / rate)

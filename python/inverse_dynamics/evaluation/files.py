@@ -73,8 +73,8 @@ def evaluate_into(
             from inverse_dynamics.show.page import write_page
 
             progress("drawing", 0, 1)
-            name = Path(directory).name
-            write_page(target / PAGE, name, [report_run(evaluation, name)])
+            run = report_run(evaluation)
+            write_page(target / PAGE, run.title, [run])
         return evaluation
 
 

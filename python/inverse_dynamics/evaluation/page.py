@@ -34,7 +34,12 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
         tables=[joint_table(f"The same without {left_out} invalid samples (shaded)", kept)]
         if left_out
         else [],
-        assumptions=_assumptions(evaluation),
+        recording=", ".join(
+            filter(
+                None, (evaluation.bag.name, log.topic, f"{len(log)} samples, {log.duration:.1f} s")
+            )
+        ),
+        assumptions=assumptions(evaluation),
         cause=causes[-1].removeprefix(CAUSE) if causes else "",
         notes=[note for note in evaluation.notes if not note.startswith(CAUSE)],
         links=scene.links,
@@ -44,8 +49,9 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
     )
 
 
-def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
-    robot, log = evaluation.robot, evaluation.log
+def assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
+    """What computed torques, their accelerations and measured torques rest on."""
+    robot = evaluation.robot
     gravity = (
         "the model's own"
         if robot.gravity is None
@@ -56,12 +62,6 @@ def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
         ("gravity", gravity),
         ("effort means", evaluation.effort.summary),
         ("accelerations", evaluation.accelerations.summary),
-        (
-            "recording",
-            evaluation.bag.name
-            + (f", {log.topic}" if log.topic else "")
-            + f", {len(log)} samples, {evaluation.time[-1]:.1f} s",
-        ),
         ("source", robot.source),
     ]
     return [(name, text) for name, text in rows if text]

@@ -65,12 +65,13 @@ def robots_table(evaluations: Mapping[str, Evaluation]) -> ReportTable:
 def recordings_table(summaries: Sequence[EvaluationSummary]) -> ReportTable:
     """Root mean square errors, one row per recording, one column per joint."""
     first = summaries[0].errors
-    # A name in lines, so that columns are narrow.
-    columns = [f"{error.joint}_{error.unit}".replace("_", "\n") for error in first]
-    one_unit = len({error.unit for error in first}) == 1 and len(first) > 1
-    columns += [f"mean\n{first[0].unit}"] if one_unit else []
+    one_unit = len({error.unit for error in first}) == 1
+    units = [""] * len(first) if one_unit else [f" [{error.unit}]" for error in first]
+    columns = [error.joint + unit for error, unit in zip(first, units, strict=True)]
+    means = one_unit and len(first) > 1
     rows: list[tuple[str | float, ...]] = [
-        (summary.name, *(error.rmse for error in summary.errors), *[summary.mean_rmse] * one_unit)
+        (summary.name, *(error.rmse for error in summary.errors), *[summary.mean_rmse] * means)
         for summary in summaries
     ]
-    return ReportTable("RMSE", ("recording", *columns), rows)
+    title = f"RMSE [{first[0].unit}]" if one_unit else "RMSE"
+    return ReportTable(title, ("recording", *columns, *["mean"] * means), rows)

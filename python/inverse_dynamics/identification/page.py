@@ -62,6 +62,7 @@ def _run(found: Identification, recording: str, several: bool) -> ReportRun:
         computed=identified,
         name="identified",
         table=joint_errors(found.joints, found.units, identified, measured),
+        recording=Path(recording).name,
         assumptions=_block_facts(blocks),
         links=scene.links,
         scene_notes=scene.notes,

@@ -44,7 +44,11 @@ def payload_page(payload: Payload) -> str:
         ("effort means", evaluation.effort.summary),
     ]
     found = ReportSummary(
-        payload_table(payload), "How it was found", facts, payload.notes, [residual_table(payload)]
+        payload_table(payload),
+        "How it was found",
+        facts,
+        payload.notes,
+        below=[residual_table(payload)],
     )
     title = f"{evaluation.robot.description or evaluation.robot.name}: what it carries"
     return render_page(title, [run], summary=found)

@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> None:
         fetch_recordings,
         listed,
     )
-    from inverse_dynamics.terminal.screen import Screen, progress_bar, show
+    from inverse_dynamics.terminal.screen import progress_bar, say, show
 
     directory = arguments.out or data_directory()
     written = []
@@ -63,12 +63,11 @@ def run(arguments: argparse.Namespace) -> None:
                 directory,
                 source=arguments.source,
                 overwrite=arguments.overwrite,
-                say=Screen(stderr=arguments.json).print,
+                say=say,
                 progress=progress,
             )
-    if arguments.json or arguments.dry_run:
-        found = listed(directory)
-        show(arguments, found, written, _plan(found))
+    found = listed(directory)
+    show(arguments, found, written, _plan(found) if arguments.dry_run else map(str, written))
 
 
 def _plan(found: dict[str, Any]) -> Iterator[Line]:

@@ -22,7 +22,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.installation.extras import require
+from inverse_dynamics.installation.extras import is_installed, require
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.vocabulary import EFFORT, JOINTS_CHANGE, POSITION, VELOCITY
 from inverse_dynamics.wording import listed
@@ -36,10 +36,17 @@ if TYPE_CHECKING:
 _INFO = "meta/info.json"  # of a LeRobot data set
 # The command that makes an .npz file of one in HDF5. With `/` before them, no name is that of an argument of savez().
 HDF5 = (
-    'python -c "import h5py, numpy, sys; d = {{}}; h5py.File(sys.argv[1]).visititems(lambda k, v: d.update('
+    'python3 -c "import h5py, numpy, sys; d = {{}}; h5py.File(sys.argv[1]).visititems(lambda k, v: d.update('
     "{{'/' + k: v[()]}}) if hasattr(v, 'dtype') and v.dtype.kind in 'fiub' else None); numpy.savez(sys.argv[2], **d)\" "
     "{path} {stem}.npz"
 )
+
+
+def command_for(command: str, path: Path, *modules: str) -> str:
+    """The command with names for a shell, after the one that installs the modules that it lacks."""
+    filled = command.format(path=shlex.quote(f"{path}"), stem=shlex.quote(path.stem))
+    absent = [module for module in modules if not is_installed(module)]
+    return f"{'pip install ' + ' '.join(absent) + ' && ' if absent else ''}{filled}"
 
 
 class ArrayTable:
@@ -175,7 +182,7 @@ def _of_mat(path: Path) -> Iterator[tuple[str, Any]]:
     try:
         found = loadmat(path, squeeze_me=True, struct_as_record=False)
     except NotImplementedError as error:
-        command = HDF5.format(path=shlex.quote(f"{path}"), stem=shlex.quote(path.stem))
+        command = command_for(HDF5, path, "h5py")
         raise ValueError(f"it is of version 7.3; save it with '-v7', or: {command}") from error
     for name, value in found.items():
         if not name.startswith("__"):

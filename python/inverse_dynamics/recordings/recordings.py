@@ -10,7 +10,6 @@ rosbag2 recordings of sensor_msgs/JointState (bags.py) or trajectory_msgs/JointT
 
 from __future__ import annotations
 
-import shlex
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +21,7 @@ from inverse_dynamics.arrays import whole_turns
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings import bags, joint_trajectories
-from inverse_dynamics.recordings.array_files import HDF5
+from inverse_dynamics.recordings.array_files import HDF5, command_for
 from inverse_dynamics.recordings.joint_log import JointLog, check_clock
 from inverse_dynamics.recordings.log_format import PLAIN, LogFormat
 from inverse_dynamics.recordings.ros1_bags import is_ros1_bag, read_ros1_log
@@ -38,19 +37,27 @@ if TYPE_CHECKING:
     from inverse_dynamics.recordings.joint_log import Clock
 
 _PUBLISHED_BY = 1000  # messages: a joint that none of them has isn't published
-_PANDAS = (
-    'python -c "import pandas, sys; pandas.read_%s.to_parquet(sys.argv[2])" {path} {stem}.parquet'
+# Of a table t, by name or by row: columns by name. With `/` before them, no name is that of an argument of savez().
+_ARRAYS = (
+    "; c = t if hasattr(t, 'keys') else {{k: [r[k] for r in t] for k in t[0]}}; numpy.savez(sys.argv[2], "
+    "**{{'/' + str(k): [*c[k].values()] if isinstance(c[k], dict) else c[k] for k in c.keys()}})\" {path} {stem}.npz"
 )
-_CONVERTED_BY = {  # what isn't read here, by commands that make something of it that is
-    ".xlsx": _PANDAS % "excel(sys.argv[1])",
-    ".json": _PANDAS % "json(sys.argv[1])",
-    ".jsonl": _PANDAS % "json(sys.argv[1], lines=True)",
-    ".pkl": _PANDAS % "pickle(sys.argv[1])",
-    ".feather": _PANDAS % "feather(sys.argv[1])",
-    ".h5": HDF5,
-    ".hdf5": HDF5,
-    ".gz": "gunzip -k {path}",
-    ".zip": "unzip {path}",
+_PYTHON = 'python3 -c "import json, numpy, pickle, sys; t = '
+# What isn't read here: what to do, with the modules that a command needs.
+_CONVERTED_BY: dict[str, tuple[str, ...]] = {
+    ".xlsx": ("save it as .csv in the program that wrote it",),
+    ".json": (f"{_PYTHON}json.load(open(sys.argv[1])){_ARRAYS}",),
+    ".jsonl": (f"{_PYTHON}[json.loads(r) for r in open(sys.argv[1])]{_ARRAYS}",),
+    ".pkl": (f"{_PYTHON}pickle.load(open(sys.argv[1], 'rb')){_ARRAYS}",),
+    ".feather": (
+        'python3 -c "import sys, pyarrow.feather as f, pyarrow.parquet as p; p.write_table(f.read_table(sys.argv[1]), '
+        'sys.argv[2])" {path} {stem}.parquet',
+        "pyarrow",
+    ),
+    ".h5": (HDF5, "h5py"),
+    ".hdf5": (HDF5, "h5py"),
+    ".gz": ("gunzip -k {path}",),
+    ".zip": ("python3 -m zipfile -e {path} .",),
 }
 
 
@@ -129,10 +136,11 @@ def open_motion(
     assert isinstance(path, Path)
     if is_ros1_bag(path):
         return read_ros1_log(path, joints, topic=topic, clock=clock, form=form, progress=progress)
-    if (command := _CONVERTED_BY.get(path.suffix.lower())) and path.is_file():
+    if (convert := _CONVERTED_BY.get(path.suffix.lower())) and path.is_file():
+        command, *modules = convert
         raise BagError(
             f"{path}: expected a recording of ROS or a table, got {path.suffix}; convert it: "
-            f"{command.format(path=shlex.quote(f'{path}'), stem=shlex.quote(path.stem))}"
+            f"{command_for(command, path, *modules)}"
         )
     recording = Recording(path)
     topics = bags.topics_of(recording)

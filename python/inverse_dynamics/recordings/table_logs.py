@@ -55,8 +55,9 @@ _LARGEST_ANGLE = 100.0  # rad: 16 turns
 # Columns of tables with a row for each joint.
 _ROW_PER_JOINT = {"joint", "joint_name", "name", "topic"}
 _TURNED_BY = (
-    'python -c "import pandas, sys; t = pandas.read_csv(sys.argv[1]).pivot(index=sys.argv[2], columns=sys.argv[3]); '
-    "t.columns = map('.'.join, t.columns); t.to_csv('NEW.csv')\""
+    'python3 -c "import csv, sys; f, t, j = sys.argv[1:]; d = {}; [d.setdefault(r[t], {t: r[t]}).update({k + chr(46) + '
+    "r[j]: r[k] for k in r if k not in (t, j)}) for r in csv.DictReader(open(f))]; w = csv.DictWriter(open('NEW.csv', "
+    "'w'), {k: 0 for r in d.values() for k in r}); w.writeheader(); w.writerows(d.values())\""
 )
 _MOTION = (POSITION, VELOCITY, ACCELERATION)
 _NEEDED_FOR = {

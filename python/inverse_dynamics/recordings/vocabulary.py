@@ -27,7 +27,7 @@ _WORDS = {
 }
 _WEAK_WORDS = {
     CURRENT: "current currents cur curr i iq amps ampere amperes",
-    POSITION: "state",
+    POSITION: "state ang",
     VELOCITY: "v",
     ACCELERATION: "a",
 }
@@ -48,8 +48,8 @@ _PASSED_OVER = (
     "limit limits max min std temperature temp tcp ee cartesian cart tool wrench model predicted"
 )
 _OTHER = frozenset(_PASSED_OVER.split())
-# Where there is `q` too, `theta` is the motor's position.
-_LESS_SURE = frozenset({"theta"})
+# Where there is `q` too, `theta` is the motor's position, and `ang` another angle.
+_LESS_SURE = frozenset({"theta", "ang"})
 
 # Factors to SI units.
 UNITS = {

@@ -58,6 +58,6 @@ def run(arguments: argparse.Namespace) -> None:
         for directory, label in zip(arguments.runs, labels, strict=True):
             progress("drawing", len(pages), len(labels))
             pages.append(report_run(read_evaluation(directory), label))
-    title = arguments.title or f"Measured and computed torques: {', '.join(r.title for r in pages)}"
+    title = arguments.title or ", ".join(page.title for page in pages)
     write_page(arguments.out, title, pages)
     Screen().print(str(arguments.out))

@@ -13,9 +13,11 @@ from inverse_dynamics.terminal.values import file_name
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Sequence
 
     from inverse_dynamics.robots.arm import Arm
     from inverse_dynamics.robots.robots import Robot
+    from inverse_dynamics.terminal.screen import Line
 
 PLACE = ("look", 3)
 SUMMARY = "list robots, show one"
@@ -53,20 +55,19 @@ def declare(options: Options) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from rich.text import Text
-
     from inverse_dynamics import _core
     from inverse_dynamics.robots.robots import load_robot, robot_names
     from inverse_dynamics.terminal.screen import show
 
     found: dict[str, Any]
+    rows: Sequence[Line]
     if arguments.new:
         arm = _new(arguments)
         robot = load_robot(arguments.new)
         found, rows = {"robot": robot}, [("written", f"{arguments.new}"), *_rows(robot, arm, [])]
     elif arguments.plugins:
         plugins = _core.available_solvers()
-        found, rows = {"plugins": plugins}, [(plugin, "") for plugin in plugins]
+        found, rows = {"plugins": plugins}, plugins
     elif arguments.robot:
         robot = load_robot(arguments.robot)
         arm, notes = _checked(robot)
@@ -75,12 +76,7 @@ def run(arguments: argparse.Namespace) -> None:
     else:
         robots = [load_robot(name) for name in robot_names()]
         found, rows = {"robots": robots}, [(robot.name, robot.description) for robot in robots]
-    width = max((len(key) for key, _ in rows), default=0) + 2
-    lines = [
-        Text(f"{key:<{width}}", "bold") + Text(text, "not bold") if text else Text(key)
-        for key, text in rows
-    ]
-    show(arguments, found, [arguments.new], lines)
+    show(arguments, found, [arguments.new], rows)
 
 
 def _new(arguments: argparse.Namespace) -> Arm:
@@ -122,7 +118,7 @@ def _rows(robot: Robot, arm: Arm, notes: list[str]) -> list[tuple[str, str]]:
         "root, tip": f"{robot.root or '(the first link)'}, {robot.tip or '(the last link)'}",
         "chain": ", ".join(arm.joint_names),
         "gravity": "(the solver's default)" if gravity is None else f"{list(gravity)} m/s²",
-        "friction": "yes" if robot.friction and _rubs(arm) else "no",
+        "friction": _friction(robot, arm),
         "topic": robot.topic,
         "joints": ", ".join(robot.joints) or "(named as in the chain)",
         "effort": f"{robot.effort}: {EFFORT_CHOICES[robot.effort]}",
@@ -135,10 +131,11 @@ def _rows(robot: Robot, arm: Arm, notes: list[str]) -> list[tuple[str, str]]:
     return [(k, text) for k, text in rows.items() if text] + [("note", note) for note in notes]
 
 
-def _rubs(arm: Arm) -> bool:
-    """Whether the model states any friction."""
+def _friction(robot: Robot, arm: Arm) -> str:
+    """Whether it counts, and whether the model states any."""
     ones = [1.0] * len(arm.joint_names)
-    return bool(arm.solver.friction_vector(ones, q=ones).any())
+    rubs = arm.solver.friction_vector(ones, q=ones).any()
+    return ("yes" if rubs else "yes, but the model states none") if robot.friction else "left out"
 
 
 def _checked(robot: Robot) -> tuple[Arm, list[str]]:

@@ -83,17 +83,20 @@ class ReportRun:
     contacts: Sequence[tuple[float, float]] = ()  # [s] from, to
     scene_notes: Sequence[str] = ()  # what of the robot isn't drawn as described
     cause: str = ""  # why torques differ, where that was found
+    recording: str = ""  # in words
+    judged: bool = True  # its errors are shown
 
 
 @dataclass(frozen=True)
 class ReportSummary:
-    """The part before the runs: a table, facts beside it, notes, and tables to be unfolded."""
+    """What stands before the runs, a table and those below it, and after them: facts, notes, tables to be unfolded."""
 
     table: ReportTable
     facts_title: str
     facts: Sequence[tuple[str, str]]
     notes: Sequence[str] = ()
     more: Sequence[ReportTable] = ()
+    below: Sequence[ReportTable] = ()
 
 
 def write_page(
@@ -180,18 +183,21 @@ def _view(run: ReportRun, index: int) -> dict[str, Any]:
     rows = list(run.table)
     shares = {row.joint: row.nrmse for row in rows if math.isfinite(row.nrmse)}
     worst = max(shares, key=lambda joint: shares[joint], default=rows[0].joint)
-    units = {row.unit for row in rows}
+    units, name = {row.unit for row in rows}, f"run-{index + 1}"
+    plots = {row.joint: f"{name}-joint-{j}" for j, row in enumerate(rows, 1)}
+    named = [joint for joint in plots if joint in run.cause]
     return {
         **vars(run),
-        "id": f"run-{index + 1}",
+        "id": name,
         "solver": solver_name(run.solver),
         "plugin": run.solver,
         "samples": f"{len(run.time):,}",
-        "duration": f"{run.time[-1] - run.time[0]:.1f} s",
         "unit": units.pop() if len(units) == 1 else "",
         "mean_rmse": float(np.mean([row.rmse for row in rows])),
         "mean_nrmse": 100 * float(np.mean([*shares.values()])) if shares else math.nan,
         "worst_joint": worst,
+        "worst_plot": plots[worst],
+        "cause_plot": plots[named[0] if named else worst],
         "worst_nrmse": 100 * shares.get(worst, math.nan),
         "table": joint_table("Errors of each joint", rows),
         "joints": [row.joint for row in rows],

@@ -109,7 +109,8 @@ class Options:
     def recording(
         self, name: str = "bag", help: str = "recording, as for `ids evaluate`", **more: Any
     ) -> None:
-        """RECORDING."""
+        """RECORDING; by default one, of which all files may be given."""
+        more = more or {"nargs": "+", "action": _OneRecording}
         self.argument(name, metavar="RECORDING", type=file_name, help=help, **more)
 
     def runs(self, help: str = "results of `ids evaluate`") -> None:
@@ -122,6 +123,24 @@ class Options:
         if not more.get("required"):
             help += "; may be left out where --urdf is given"
         self.add("--robot NAME|FILE", help, **more).completer = _robots  # type: ignore[attr-defined]
+
+
+class _OneRecording(argparse.Action):
+    """The files of one recording, joined. Raises UserError."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, given: Any, *_: Any
+    ) -> None:
+        if len(given) > 1:
+            from inverse_dynamics.recordings.tables import parts_joined
+
+            given = parts_joined(given)
+        if len(given) > 1:
+            parser.error(
+                f"expected one recording, got {given[0]} and {given[1]}; several files may be given only of one "
+                "recording: of tables that together have positions and efforts"
+            )
+        setattr(namespace, self.dest, given[0])
 
 
 def _robots(prefix: str, **_: object) -> list[str]:

@@ -23,7 +23,7 @@ from inverse_dynamics.wording import message, printable
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from rich.console import ConsoleOptions, RenderableType
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
 SCHEMA = 3  # of the object of --json; docs/command_line.md
 _FIRST_LINE = 10.0  # s
+_WIDEST, _NUMBER = 10_000, 6  # characters of a line, and of most numbers
 
 
 class Screen(Console):
@@ -77,40 +78,76 @@ def show(
         document = {"schema": SCHEMA, "verb": verb, "written": paths, "result": result}
         print(json.dumps(plain(document), indent=2, allow_nan=False))
         return
-    console = Screen()
-    for line in texts_of(lines):
+    console, texts = Screen(), list(texts_of(lines))
+    widest = max((len(line[0]) for line in texts if isinstance(line, tuple)), default=0)
+    for line in texts:
         if isinstance(line, tuple):
             key, text = line
-            prefix = f"{key:<14} "
-            if console.is_terminal and key:  # whole words
-                text, prefix = "\n".join(filled(text, console.width, prefix, " " * 15)), ""
+            prefix = f"{key:<{max(14, widest)}} " if key else ""
+            if console.is_terminal:  # whole words
+                hang = " " * len(prefix)
+                text, prefix = "\n".join(filled(text, console.width, prefix, hang)), ""
             console.print(f"{prefix}{text}" if key else Text(text, "bold"))
+        elif isinstance(line, ReportTable):
+            table = on_screen(line, console)
+            Screen(width=max(console.width, _narrowest(table, console))).print(table)
         else:
-            shown = on_screen(line) if isinstance(line, ReportTable) else line
-            if isinstance(shown, Table) and shown.caption and console.is_terminal:
-                shown.caption = "\n".join(filled(f"{shown.caption}", console.width, "", ""))
-            console.print(shown)
+            console.print(line)
 
 
-def on_screen(table: ReportTable) -> Table:
-    """A table whose names stay whole; numbers are aligned to the right."""
+def on_screen(table: ReportTable, console: Console) -> Table:
+    """A table whose names stay whole, numbers aligned to the right; a line per row and no more in a pipe.
+
+    Where headings make it wider than a terminal, those that are longer than what is below them become
+    numbers, which the note explains.
+    """
+    if not console.is_terminal:
+        return _drawn(table, table.headings, table.note, None)
+    headings, notes = table.headings, [table.note]
+    shown = _drawn(table, headings, table.note, box.SIMPLE_HEAD)
+    if _narrowest(shown, console) > console.width:
+        below = [max(_NUMBER, *map(len, map(_cell, c))) for c in zip(*table.rows, strict=True)]
+        long = [h for h, most in zip(headings, below, strict=True) if _longest_word(h) > most]
+        numbers = {heading: f"({k})" for k, heading in enumerate(long, 1)}
+        notes = [*(f"{number} {heading}" for heading, number in numbers.items()), *notes]
+        headings = [numbers.get(heading, heading) for heading in headings]
+    lines = (row for note in notes if note for row in filled(note, console.width, "", ""))
+    return _drawn(table, headings, "\n".join(lines), box.SIMPLE_HEAD)
+
+
+def _drawn(table: ReportTable, headings: Sequence[str], note: str, lines: box.Box | None) -> Table:
     shown = Table(
-        box=box.SIMPLE_HEAD,
+        box=lines,
         title=table.title or None,
         title_justify="left",
-        caption=table.note or None,
+        caption=note or None,
         caption_justify="left",
         collapse_padding=True,
+        pad_edge=lines is not None,
+        padding=(0, 1) if lines else (0, 2, 0, 0),
     )
-    for heading, column in zip(table.headings, zip(*table.rows, strict=True), strict=True):
+    for heading, column in zip(headings, zip(*table.rows, strict=True), strict=True):
         texts = isinstance(column[0], str)
-        shown.add_column(heading, justify="left" if texts else "right", overflow="fold")
+        shown.add_column(heading, justify="left" if texts else "right")
     for row in table.rows:
         if table.total and row is table.rows[-1]:
             shown.add_section()
-        cells = (rounded(value) if isinstance(value, float) else f"{value}" for value in row)
-        shown.add_row(*cells)
+        shown.add_row(*map(_cell, row))
     return shown
+
+
+def _narrowest(table: Table, console: Console) -> int:
+    """Its width with whole words, in a pipe with whole lines."""
+    size = console.measure(table, options=console.options.update(width=_WIDEST))
+    return size.minimum if console.is_terminal else size.maximum
+
+
+def _longest_word(text: str) -> int:
+    return max(map(len, text.split()))
+
+
+def _cell(value: str | float) -> str:
+    return rounded(value) if isinstance(value, float) else f"{value}"
 
 
 def rounded(value: float) -> str:
@@ -122,7 +159,12 @@ def rounded(value: float) -> str:
 
 def announce(text: str) -> None:
     """Announce long work on stderr."""
-    print(message(f"ids: {text} ..."), file=sys.stderr, flush=True)
+    say(f"{text} ...")
+
+
+def say(text: str) -> None:
+    """A sentence on stderr; bars of progress stay below it."""
+    print(message(f"ids: {text}"), file=sys.stderr, flush=True)
 
 
 class _ProgressLines:

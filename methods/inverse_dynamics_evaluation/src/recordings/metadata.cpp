@@ -18,8 +18,6 @@ namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
-constexpr std::int64_t kNewest = 9;
-
 YAML::Node required(const YAML::Node& node, const char* key) {
   if (!node.IsMap()) {
     throw DamageError(std::string("metadata.yaml: ") + key + ": expected it in a mapping");
@@ -146,9 +144,7 @@ std::string scalar(const std::string& value) {
 Metadata readMetadata(const std::string& path) {
   const YAML::Node root = YAML::Load(contentOf(path));
   const YAML::Node about = required(root, "rosbag2_bagfile_information");
-  if (const std::int64_t version = integer(about, "version"); version > kNewest) {
-    throw DamageError("metadata.yaml: version: expected at most 9, got " + std::to_string(version));
-  }
+  integer(about, "version");  // newer ones add keys
   Metadata metadata;
   const std::string storage = text(required(about, "storage_identifier"), "storage_identifier");
   if (storage != name(Storage::kSqlite3) && storage != name(Storage::kMcap)) {

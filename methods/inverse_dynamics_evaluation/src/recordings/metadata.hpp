@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// metadata.yaml of a recording: versions up to 9 are read, 9 is written.
+/// metadata.yaml of a recording: all versions are read, 9 is written.
 #pragma once
 
 #include <cstdint>

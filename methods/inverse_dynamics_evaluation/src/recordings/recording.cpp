@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "joint_state_decoder.hpp"
+#include "mcap_format.hpp"
 #include "merged_joint_states.hpp"
 #include "messages.hpp"
 #include "recording_content.hpp"
@@ -39,20 +40,23 @@ char firstByte(const std::string& file) {
   return std::ifstream(file, std::ios::binary).get(byte) ? byte : '\0';
 }
 
+// A command; sqlite3, the program, needn't be installed.
+std::string pragma(const std::string& what, const std::string& file) {
+  return "`python3 -c \"import sqlite3, sys; sqlite3.connect(sys.argv[1]).execute('PRAGMA " + what +
+         "')\" " + file + "`";
+}
+
 // A recorder that was killed leaves messages in a log beside the database, or what it has changed
 // last in a journal. A journal that is done with is empty or begins with zeros.
 void requireComplete(const std::string& file) {
   if (firstByte(file + "-wal") != 0) {
     throw RecordingError(file + ": is incomplete: some of its messages are in " +
-                         fs::path(file).filename().string() +
-                         "-wal still; put them in with `sqlite3 " + file +
-                         " 'PRAGMA wal_checkpoint(TRUNCATE)'`");
+                         fs::path(file).filename().string() + "-wal still; put them in with " +
+                         pragma("wal_checkpoint(TRUNCATE)", file));
   }
   if (firstByte(file + "-journal") != 0) {
-    throw RecordingError(file +
-                         ": is incomplete: a change of it was interrupted; undo it with "
-                         "`sqlite3 " +
-                         file + " 'PRAGMA integrity_check'`");
+    throw RecordingError(file + ": is incomplete: a change of it was interrupted; undo it with " +
+                         pragma("integrity_check", file));
   }
 }
 
@@ -139,6 +143,14 @@ std::string partNote(const std::string& path) {
          " files of a recording, and read alone; give " + directory.string() + " to read all";
 }
 
+// By what a file begins with, as it may have been renamed; else by its name.
+Storage storageOf(const std::string& file) {
+  const char first = firstByte(file);
+  const bool named = fs::path(file).extension() == ".mcap";
+  return first == static_cast<char>(kMcapMagic[0]) || (named && first != 'S') ? Storage::kMcap
+                                                                              : Storage::kSqlite3;
+}
+
 // What a path is.
 Place placeOf(const std::string& path) {
   std::error_code error;
@@ -183,7 +195,13 @@ void requireFiles(const std::vector<std::string>& files) {
     if (!fs::is_regular_file(file, error)) missing += (missing.empty() ? "" : ", ") + quoted(file);
     requireComplete(file);
   }
-  if (!missing.empty()) throw DamageError("some of its files are missing: " + missing);
+  if (missing.empty()) return;
+  const std::vector<std::string> others = partsIn(fs::path(files.front()).parent_path());
+  if (others.size() == 1) {
+    throw ReadingError("metadata.yaml names " + missing + ", but the only file is " +
+                       others.front() + "; if it was renamed, give " + others.front() + " itself");
+  }
+  throw DamageError("some of its files are missing: " + missing);
 }
 
 // Topics that are joined by +, which may also be in a name.
@@ -236,7 +254,7 @@ void RecordingContent::read() {
     return;
   }
   files = place == Place::kParts ? partsIn(path) : std::vector<std::string>{path};
-  storage = fs::path(files.front()).extension() == ".mcap" ? Storage::kMcap : Storage::kSqlite3;
+  storage = storageOf(files.front());
   if (place == Place::kParts) {
     note = "metadata.yaml is missing: " + counted(static_cast<std::int64_t>(files.size()), "file") +
            " found in " + path + " read in the order of their numbers";

@@ -21,9 +21,9 @@ def currents(*gains):
 
 
 def test_runs_are_called_by_what_differs(evaluation):
-    robot = replace(evaluation.robot, plugin="a/Other", friction=False)
+    robot = replace(evaluation.robot, plugin="other_inverse_dynamics_solver/Class", friction=False)
     compared = compare([evaluation, replace(evaluation, robot=robot)])
-    assert compared.labels == ("B", "Other, without friction")
+    assert compared.labels == ("a", "other, without friction")
 
 
 def test_other_recordings_are_refused(evaluation):
@@ -74,3 +74,13 @@ def test_the_verb_says_what_it_needs(tmp_path, evaluation, capsys):
         assert said in capsys.readouterr().err
     assert cli.main(["compare", run, run, "--labels", "one,two"]) == 0
     assert "two" in capsys.readouterr().out
+
+
+def test_the_verb_calls_runs_as_the_user_does(tmp_path, evaluation, capsys):
+    for name in ("urdf", "identified", "other/urdf"):
+        write_evaluation(evaluation, tmp_path / name, figures=())
+    assert cli.main(["compare", str(tmp_path / "urdf"), str(tmp_path / "identified")]) == 0
+    assert re.search(r"joint +unit +urdf +identified\n", capsys.readouterr().out)
+    same = [str(tmp_path / name) for name in ("urdf", "other/urdf")]
+    assert cli.main(["compare", *same]) == 0
+    assert re.search(rf"joint +unit +{same[0]} +{same[1]}\n", capsys.readouterr().out)

@@ -232,6 +232,16 @@ def test_efforts_mean_what_they_mean_in_an_evaluation(ids, tmp_path, solver, mot
     summary = json.loads((tmp_path / "found" / "contacts.json").read_text())
     assert summary["effort"] == "torque_without_gravity"
     assert len(summary["contacts"]) == 1
+    columns = zip(*(line.split(",") for line in table.read_text().splitlines()), strict=True)
+    parts = {"efforts.csv": "effort", "states.csv": ""}
+    columns = [*columns]
+    for name, kind in parts.items():
+        chosen = [c for c in columns if c[0] == "time" or c[0].startswith("effort") == bool(kind)]
+        lines = map(",".join, zip(*chosen, strict=True))
+        (tmp_path / name).write_text("\n".join(lines) + "\n")
+    assert ids("contact", *sorted(parts, reverse=True), *options, *meaning)[0] == 0
+    joined = json.loads((tmp_path / "found" / "contacts.json").read_text())
+    assert joined["contacts"] == summary["contacts"]
     fails(ids("contact", table, *options, "--effort-is", "current", "--overwrite"), "drive_gains")
     fails(ids("contact", table, *options, "--effort-is", "force"), "invalid choice: 'force'")
 

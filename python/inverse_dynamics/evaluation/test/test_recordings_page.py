@@ -36,7 +36,7 @@ def test_what_lies_above_the_median_is_shaded(html):
 
 
 def test_the_start_is_shown_where_stamps_are_dates(html):
-    assert '<td class="date">2025-12-29 09:20:00</td>' in html
+    assert '<td class="date" data-heading="start (UTC)">2025-12-29 09:20:00</td>' in html
     undated = render_recordings_page("A week", [summary("one"), summary("two")], {}, {})
     assert "start (UTC)" not in undated
     assert 'href="one/"' in undated

@@ -169,6 +169,25 @@ def test_the_verb_writes_yaml_json_and_figure(ids, recording):
     assert "payload.yaml: exists already" in err
 
 
+def test_files_of_one_recording_are_joined(ids, recording, tmp_path):
+    header, *rows = (line.split(",") for line in recording.read_text().splitlines())
+    parts = {"states.csv": "time position velocity acceleration", "efforts.csv": "time effort"}
+    for name, kinds in parts.items():
+        columns = [k for k, key in enumerate(header) if key.partition(".")[0] in kinds.split()]
+        lines = (",".join(row[k] for k in columns) for row in (header, *rows))
+        Path(name).write_text("\n".join(lines) + "\n")
+    options = ("--robot", "panda_simulated", "--figures", "none", "--json")
+    found = []
+    for given in ([recording], parts):
+        code, out, err = ids("payload", *given, *options, "--out", f"{len(given)}.yaml")
+        assert (code, err) == (0, "")
+        found.append(json.loads(out)["result"]["mass"])
+    assert found[0] == pytest.approx(found[1], rel=1e-9)
+    code, _, err = ids("payload", recording, recording, *options, "--out", "x.yaml")
+    assert code == 2
+    assert "expected one recording, got" in err
+
+
 def test_an_empty_recording_tells_offsets_and_noise(ids, tmp_path):
     offset = np.linspace(-0.8, 0.8, 7)
     solver = panda()

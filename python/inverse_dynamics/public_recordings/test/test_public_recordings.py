@@ -118,8 +118,9 @@ ALL = [
 
 def test_recordings_are_fetched_whole_and_their_size_is_said_first(ids, tmp_path, server):
     code, out, err = ids()
-    assert (code, err) == (0, "")
-    assert out.splitlines()[0] == f"fetching 0.26 MB (MIT) from {server.url}"
+    assert code == 0
+    assert out == "out/bags/one\nout/bags/two\n"
+    assert err.splitlines()[0] == f"ids: fetching 0.26 MB (MIT) from {server.url}"
     assert files(tmp_path / "out") == ALL
     assert (tmp_path / "out/bags/one/one.db3").read_bytes() == ONE
     assert (tmp_path / "out/bags/one/metadata.yaml").read_text() == "of: one\n"
@@ -128,11 +129,11 @@ def test_recordings_are_fetched_whole_and_their_size_is_said_first(ids, tmp_path
 def test_what_is_there_and_intact_is_left_alone(ids, tmp_path, server):
     ids()
     server.asked.clear()
-    code, out, _ = ids()
+    code, _, err = ids()
     assert code == 0
     assert server.asked == []
-    assert out.count("already there and intact") == 2
-    assert "fetching" not in out
+    assert err.count("already there and intact") == 2
+    assert "fetching" not in err
 
 
 def test_only_what_is_missing_is_fetched(ids, tmp_path, server):

@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
+import gzip
 import json
+import os
+import pickle
 import re
 import shlex
 import subprocess
 import sys
+import zipfile
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -257,11 +262,11 @@ def test_a_table_is_read_as_programs_write_it(file, text):
         (
             "log.xlsx",
             b"PK",
-            r"got \.xlsx; convert it: python -c .*read_excel.*log\.xlsx log\.parquet",
+            r"got \.xlsx; convert it: save it as \.csv in the program that wrote it",
         ),
-        ("log.h5", b"", r"got \.h5; convert it: python -c .*h5py\.File\(.*log\.h5 log\.npz"),
+        ("log.h5", b"", r"got \.h5; convert it: .*python3 -c .*h5py\.File\(.*log\.h5 log\.npz"),
         ("my log.csv.gz", b"", r"convert it: gunzip -k '.*my log\.csv\.gz'"),
-        ("Ann's.h5", b"", r"""python -c ".*" '.*/Ann'"'"'s\.h5' 'Ann'"'"'s'\.npz"""),
+        ("Ann's.h5", b"", r"""python3 -c ".*" '.*/Ann'"'"'s\.h5' 'Ann'"'"'s'\.npz"""),
         (
             "log.csv",
             b"\x1f\x8b\x80",
@@ -278,6 +283,70 @@ def test_what_is_not_read_is_refused_with_the_command_that_converts_it(
     file.write_bytes(content)
     with pytest.raises(BagError, match=expected):
         read_recording(file, ("a",))
+
+
+def command_of(path, joints=("a",)):
+    """What the message says to do with a file."""
+    with pytest.raises(BagError) as caught:
+        read_recording(path, joints)
+    return str(caught.value).partition("it: ")[2]
+
+
+def follow(command, tmp_path):
+    """Does it with this Python, and what is installed here."""
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    subprocess.run(command, shell=True, cwd=tmp_path, check=True, env={**os.environ, "PATH": path})
+
+
+@pytest.mark.parametrize("rows", [True, False])
+@pytest.mark.parametrize("kind", ["json", "jsonl", "pkl", "feather", "zip", "gz"])
+def test_what_is_converted_as_the_message_says_is_read(tmp_path, kind, rows):
+    """Without pandas."""
+    count = np.arange(24)
+    table = {"t": count / 10, "q1": 1.0 * count, "tau1": 10.0 * count}
+    table = {name: column.tolist() for name, column in table.items()}
+    by_row = [dict(zip(table, row, strict=True)) for row in zip(*table.values(), strict=True)]
+    source, file = tmp_path / "my log.csv", tmp_path / f"my log.{kind}"
+    write_table(source, table)
+    if kind == "json":
+        by_number = {k: dict(enumerate(column)) for k, column in table.items()}  # as pandas has it
+        file.write_text(json.dumps(by_row if rows else by_number))
+    elif kind == "jsonl":
+        file.write_text("".join(f"{json.dumps(row)}\n" for row in by_row))
+    elif kind == "pkl":
+        file.write_bytes(pickle.dumps(by_row if rows else table))
+    elif kind == "feather":
+        pa = pytest.importorskip("pyarrow")
+        pytest.importorskip("pyarrow.feather").write_feather(pa.table(table), str(file))
+    elif kind == "zip":
+        zipfile.ZipFile(file, "w").write(source, source.name)
+    else:
+        file = source.with_name("my log.csv.gz")
+        file.write_bytes(gzip.compress(source.read_bytes()))
+    source.unlink()
+    follow(command_of(file), tmp_path)
+    (made,) = (path for path in tmp_path.iterdir() if path != file)
+    log = read_recording(made, ("a",))
+    np.testing.assert_array_equal(log.q[:, 0], table["q1"])
+    np.testing.assert_array_equal(log.effort[:, 0], table["tau1"])
+
+
+def test_a_command_installs_what_it_lacks_first(tmp_path, monkeypatch):
+    file = tmp_path / "log.h5"
+    file.touch()
+    for found, first in ((None, "pip install h5py && python3 -c"), (object(), "python3 -c")):
+        monkeypatch.setattr("inverse_dynamics.installation.extras.find_spec", lambda _, f=found: f)
+        assert command_of(file).startswith(first)
+
+
+def test_a_table_with_a_row_for_each_joint_is_turned_as_the_message_says(tmp_path):
+    rows = [(k / 10, joint, k, 10 * k) for k in range(24) for joint in ("a", "b")]
+    lines = [f"{t},{joint},{q + (joint == 'b')},{tau}\n" for t, joint, q, tau in rows]
+    (tmp_path / "log.csv").write_text("time,joint,position,effort\n" + "".join(lines))
+    follow(command_of(tmp_path / "log.csv", ("a", "b")), tmp_path)
+    log = read_recording(tmp_path / "NEW.csv", ("a", "b"))
+    np.testing.assert_array_equal(log.q, [[k, k + 1] for k in range(24)])
+    np.testing.assert_array_equal(log.effort, [[10 * k, 10 * k] for k in range(24)])
 
 
 def test_the_command_for_hdf5_keeps_arrays_of_numbers(tmp_path):
@@ -341,7 +410,7 @@ def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
         (HEADER + "1e10,1,2,3\n1e10,1,2,3\n", "expected seconds, got 1e+10; count from"),
         (
             "t,topic,value\n0,/q[0],1\n",
-            "expected a row for each time, got one for each topic; turn it: python -c",
+            "expected a row for each time, got one for each topic; turn it: python3 -c",
         ),
         (
             "t,q1,tau1\n0,2048,1\n0.1,2047,1\n",
@@ -596,6 +665,29 @@ def test_files_of_one_recording_are_joined_at_the_times_of_the_first(tmp_path):
     whole = tmp_path / "motion.csv"
     whole.write_text(HEADER + ROWS)
     assert parts_joined([whole, whole]) == [whole, whole]
+
+
+def test_a_slow_clock_is_mended_as_the_message_says(tmp_path, torques):
+    file = tmp_path / "log.csv"
+    table = table_of(torques)
+    write_table(file, {**table, "time": table["time"] / 1.3})
+    found = evaluate(file, "ur10_simulated")
+    (remedy,) = re.findall(r"of a table: --scale (time=\S+)", found.notes[-1])
+    mended = evaluate(file, "ur10_simulated", scale=[remedy])
+    assert mended.diagnosis == ()
+    assert mended.mean_rmse < 0.1 * found.mean_rmse
+
+
+def test_files_are_known_by_what_their_names_say(tmp_path):
+    time = 0.1 * np.arange(21)
+    files = [tmp_path / f"excit_{name}_record.txt" for name in ("ang", "vel", "torque")]
+    for file, values in zip(files, (np.sin(time), np.cos(time), 10 * time), strict=True):
+        np.savetxt(file, np.column_stack([values, values]))
+    (joined,) = parts_joined(files)
+    log = read_recording(joined, ("a", "b"), form=LogFormat(rate=10.0))
+    np.testing.assert_allclose(log.q[:, 0], np.sin(time))
+    np.testing.assert_allclose(log.qd[:, 1], np.cos(time))
+    np.testing.assert_allclose(log.effort[:, 1], 10 * time)
 
 
 @pytest.mark.parametrize(

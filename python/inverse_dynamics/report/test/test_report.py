@@ -64,7 +64,7 @@ def run(evaluation):
 def page(run, comparison, tmp_path_factory):
     """The page as a file: two runs and a comparison."""
     file = tmp_path_factory.mktemp("page") / "report.html"
-    runs = [run, _with_others(replace(run, title="second")), comparison.report_run()]
+    runs = [run, _with_others(replace(run, title="second")), comparison.report_run("third")]
     file.write_text(render_page("A page", runs, ["A note."]))
     return file
 
@@ -150,7 +150,7 @@ def test_names_are_text_and_never_markup(evaluation, comparison):
     robot = replace(evaluation.robot, description=evil, source=evil)
     bad = replace(evaluation, errors=errors, robot=robot, notes=(evil,), joint_names=(evil,) * 6)
     bad_comparison = replace(comparison, labels=(evil, evil + "2"), evaluations=(bad, bad))
-    html = render_page(evil, [report_run(bad, evil), bad_comparison.report_run()], [evil])
+    html = render_page(evil, [report_run(bad, evil), bad_comparison.report_run("third")], [evil])
     assert "<script>alert" not in html
     assert html.count("</script") == 2
     assert data_of(html)[0]["plots"][0]["label"] == evil
@@ -175,7 +175,7 @@ def test_tables_and_trajectories_are_shown_as_recordings_are(tmp_path, torques):
         write_evaluation(result, tmp_path / f"{name}_run", figures=())
         run = report_run(read_evaluation(tmp_path / f"{name}_run"))
         stated = dict(run.assumptions)
-        assert stated["recording"] == f"{name}{topic}, 1500 samples, 6.0 s"
+        assert run.recording == f"{name}{topic}, 1500 samples, 6.0 s"
         assert stated["accelerations"] == "given by the recording"
         assert len(run.links) > 6
         page = render_page("A page", [run])
@@ -192,7 +192,7 @@ def test_a_comparison_is_one_run_with_the_others_to_choose_and_a_table(page, com
     assert torques["one N m off"]["hidden"] is False
     own, other = (floats(errors[name]["values"]) for name in ("error", "one N m off"))
     np.testing.assert_allclose(other, own + 1, atol=1e-4)
-    table = html[html.index("RMSE of as it is and one N m off") :].replace("<wbr>", "")
+    table = html[html.index("RMSE of each joint") :].replace("<wbr>", "")
     row = re.findall(r">([^<>]*)</t[dh]>", table[table.index(">elbow_joint<") :])[:4]
     assert row[1] == "N m"
     assert [float(c) for c in row[2:]] == pytest.approx(comparison.rmse[:, 2], rel=0.01)
@@ -216,8 +216,8 @@ def test_report_verb_writes_the_page(evaluation, tmp_path, capsys, monkeypatch):
     assert cli.main(["report", "result", "--labels", "arm"]) == 0
     assert capsys.readouterr().out == "report.html\n"
     html = (tmp_path / "report.html").read_text()
-    assert ">arm</h2>" in html
-    assert "<title>Measured and computed torques: arm</title>" in html
+    assert "<title>arm</title>" in html
+    assert html.count(">arm<") == 2  # title and headline
     assert cli.main(["report", "result"]) == 2
     assert "exists already" in capsys.readouterr().err
 
@@ -241,18 +241,69 @@ def test_bands_and_other_models_are_in_the_data(page, evaluation):
 def test_a_summary_comes_before_the_runs(run):
     table = ReportTable("Errors", ("joint", "error"), [("elbow", 0.12345), ("mean", float("nan"))])
     more = ReportTable("More <of it>", ("x",), [(1e-9,)], note="A note.")
-    summary = ReportSummary(table, "Choices", [("law", "step")], ["Found"], [more])
+    below = ReportTable("Thresholds", ("joint", "limit"), [("elbow", 2.0)])
+    summary = ReportSummary(table, "Choices", [("law", "step")], ["Found"], [more], [below])
     html = render_page("A page", [run], summary=summary)
     assert html.index("<h2>Errors</h2>") < html.index('id="run-1"') < html.index("Choices</h2>")
     for text in (
-        "<td>0.123</td>",
-        "<td>\u2013</td>",
+        ">0.123</td>",
+        ">\u2013</td>",
         "<dd>step</dd>",
         "<li>Found</li>",
         "1.00·10⁻⁹",
     ):
         assert text in html
     assert "<summary>More &lt;of it&gt;</summary>" in html
+    assert html.index("<h2>Errors</h2>") < html.index("<h3>Thresholds</h3>") < html.index("run-1-")
+
+
+def in_order(html, *texts):
+    """Whether the page has each text, and in this order."""
+    body = html[html.index("<body>") :].replace("<wbr>", "")
+    places = [body.find(text) for text in texts]
+    return -1 not in places and places == sorted(places)
+
+
+def test_robot_recording_verdict_table_and_plots_come_in_this_order(run):
+    found = replace(run, cause="wrist_1_joint is reversed", notes=("a note",))
+    html = render_page(run.title, [found])
+    link = '<a href="#run-1-joint-4">Likely cause of the error</a>'
+    order = (
+        "<h1>first</h1>",
+        run.description,
+        run.recording,
+        "mean RMSE",
+        link,
+        "Errors of each joint",
+    )
+    assert in_order(
+        html, *order, 'id="run-1-joint-1"', 'id="run-1-joint-4"', "What was assumed", "H(q)"
+    )
+    assert html.count(">first<") == 2  # title and headline
+    html = render_page(run.title, [replace(found, cause="friction")])
+    worst = max(run.table, key=lambda row: row.nrmse)
+    place = f"#run-1-joint-{[*run.table].index(worst) + 1}"
+    assert f'<a href="{place}">Likely cause of the error</a>' in html
+    assert f'<a href="{place}">{worst.joint}</a>' in html
+
+
+def test_a_comparison_comes_first_on_its_page(comparison):
+    robot = replace(comparison.evaluations[1].robot, friction=True)
+    other = replace(comparison.evaluations[1], robot=robot)
+    html = replace(comparison, evaluations=(comparison.evaluations[0], other)).page()
+    assert in_order(
+        html,
+        "<h1>ur10_simulated: 2 runs compared</h1>",
+        "Recording",
+        ">one N m off</th>",
+        'id="run-1',
+    )
+    assert "mean NRMSE" not in html  # cards of one run
+    assert "<summary>RMSE" not in html
+    facts = html[html.index('id="choices"') :].replace("<wbr>", "")
+    assert "<dt>friction, as it is</dt><dd>left out</dd>" in facts
+    assert "<dt>friction, one N m off</dt><dd>as the solver models it</dd>" in facts
+    assert facts.count("<dt>gravity") == 1
 
 
 # ---- the page in a browser -------------------------------------------------------------------------------------------
@@ -412,7 +463,10 @@ def test_paper_shows_the_plots(page, tmp_path):
 
 def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, capsys, monkeypatch):
     monkeypatch.delenv("IDS_DATA_DIR", raising=False)
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))  # where `ids data` has put nothing
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    (tmp_path / "inverse_dynamics/bags").mkdir(
+        parents=True
+    )  # as `ids data` without network leaves it
     out = tmp_path / "demo"
     assert cli.main(["demo", "--quick", "--out", str(out)]) == 0
     printed = " ".join(capsys.readouterr().out.split())

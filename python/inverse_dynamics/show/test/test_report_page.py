@@ -189,6 +189,21 @@ def test_lines_break_between_words_and_parts_of_names(show, width):
     assert broken == []
 
 
+def test_a_phone_shows_every_column(turn):
+    driver = turn(390, "light")
+    cut = driver.execute_script(
+        "return [...document.querySelectorAll('.scroll')].filter((e) => e.scrollWidth > e.clientWidth)"
+        ".map((e) => e.getAttribute('aria-label'))"
+    )
+    assert cut == []
+    headings = driver.execute_script(
+        "const of = (e) => getComputedStyle(e, '::before').content;"
+        "return [...document.querySelectorAll('.wide tbody tr:first-child td')].map(of)"
+    )
+    assert headings
+    assert "none" not in headings
+
+
 def test_a_change_of_the_scheme_draws_plots_and_robot_again(show):
     driver = show("evaluation")
     corner = """

@@ -15,7 +15,7 @@ from inverse_dynamics import Solver, cli, evaluate, read_evaluation
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.recordings.bags import write_joint_logs
 from inverse_dynamics.robots.robots import load_robot, robot_of_description
-from inverse_dynamics.terminal.screen import _ProgressLines, progress_bar, rounded
+from inverse_dynamics.terminal.screen import _ProgressLines, announce, progress_bar, rounded
 
 RAW = ("--accelerations", "backward-difference")
 NO_FIGURE = ("--figures", "none")
@@ -288,10 +288,50 @@ def test_options_that_make_no_sense_are_told(ids, arguments, expected):
     fails(ids(*arguments), expected)
 
 
-def test_names_of_joints_are_whole_on_a_narrow_screen(ids, bag, monkeypatch):
+@pytest.mark.parametrize("terminal", [True, False])
+def test_names_are_whole_on_a_narrow_terminal_and_in_a_pipe(ids, bag, monkeypatch, terminal):
+    if terminal:
+        monkeypatch.setenv("FORCE_COLOR", "1")
+        monkeypatch.setenv("TERM", "dumb")  # 80 columns, nothing bold
     monkeypatch.setenv("COLUMNS", "80")
-    _, out, _ = ids("evaluate", bag, "--robot", "ur10_simulated", *NO_FIGURE, "--out", "result")
-    assert re.search(r"^ +shoulder_lift_joint +N m ", out, re.MULTILINE)
+    shutil.copytree(bag, "another_recording")
+    evaluated = ("evaluate", bag, "another_recording", "--robot", "ur10_simulated", *RAW)
+    code, out, _ = ids(*evaluated, *NO_FIGURE, "--jobs", "1", "--out", "out")
+    names = ("another_recording", *Solver(UR10).joint_names)
+    assert code == 0
+    assert [name for name in names if name not in out] == []
+    code, shown, _ = ids("robots", "ur10_real")
+    assert code == 0
+    assert [name for name in names[1:] if shown.count(name) < 2] == []  # chain and joints
+    table = [line for line in out.splitlines() if re.search(r"recording|motion|joint", line)]
+    if terminal:
+        assert max(map(len, table)) <= 80
+    else:
+        header, *rows = (re.split("  +", line.strip()) for line in table if " " in line)
+        header, *rows = [row for row in (header, *rows) if len(row) == 8]
+        assert header == ["recording", *names[1:], "mean"]
+        assert [row[0] for row in rows] == ["motion", "another_recording"]
+
+
+def test_a_new_robots_friction_is_told_as_it_is_written(ids, tmp_path):
+    for option, told, written in (
+        ((), "yes, but the model states none", "friction: true"),
+        (("--no-friction",), "left out", "friction: false"),
+    ):
+        code, out, _ = ids("robots", "--new", "new.yaml", "--overwrite", "--urdf", URDF, *option)
+        assert code == 0
+        assert re.search(rf"^friction +{told}$", out, re.MULTILINE)
+        assert written in (tmp_path / "new.yaml").read_text()
+
+
+def test_results_stand_before_what_is_said_of_them(bag, tmp_path):
+    """Where standard output and error are one pipe."""
+    command = ["ids", "evaluate", bag, "--robot", "ur10_simulated", *RAW, *NO_FIGURE, "--json"]
+    for _ in range(2):
+        result = subprocess.run(
+            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=tmp_path, check=True
+        )  # fmt: skip
+    assert result.stdout.endswith("}\nids: replaced the earlier result in motion_ur10_simulated\n")
 
 
 @pytest.mark.parametrize(
@@ -424,5 +464,7 @@ def test_progress_tells_the_time_that_is_left(monkeypatch, capsys):
     with progress_bar() as progress:
         progress("reading", 0, 1000)
         progress("reading", 10, 1000)
+        announce("the next step")
     plain = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", capsys.readouterr().err)
     assert re.search(r"reading .* 10/1000 \d:\d\d:\d\d [-\d]+:[-\d:]+ left", plain), plain
+    assert re.search(r"[\r\n]ids: the next step \.\.\. *\n", plain), plain  # bars stay below it

@@ -32,6 +32,8 @@ def test_short_help_fits_one_screen(ids, monkeypatch, verb):
     assert [line for line in lines if len(line) > 80] == []
     assert "--help" in lines[-1]
     assert not re.search(r" (options|overrides of the run configuration|the path):", out)
+    _, whole, _ = ids(*verb, "--help")
+    assert {*re.findall(r"--[\w-]+", out)} <= {*re.findall(r"--[\w-]+", whole)}
 
 
 def test_errors_fit_the_terminal(ids, monkeypatch):
