@@ -111,8 +111,8 @@ std::vector<std::string> sampleFindings(const std::string& clock, const SampleRe
   }
   if (other.count > 0) {
     found.push_back(std::to_string(other.count) + of_all +
-                    "don't belong to the motion around them" + left_out +
-                    ", as those of a second publisher or empty messages: the first is sample " +
+                    "don't belong to the motion around them, but to a second publisher or an empty "
+                    "message, and are left out: the first is sample " +
                     std::to_string(other.first + 1));
   }
   if (!samples.clock_steps.empty()) found.push_back(clockFinding(samples.clock_steps));

@@ -82,8 +82,10 @@ void findErrors(Evaluation& result, const EvaluationOptions& options) {
     table.measured.middleCols(first, count) =
         result.effort.torques(table.effort.middleCols(first, count));
   });
-  result.errors = metrics(table.computed, table.measured);
   result.errors_of_kept = metrics(table.computed, table.measured, Mask(table.kept));
+  // samples of another source have nothing to do with the robot's torques
+  const bool alone = result.accelerations.samples.second_source.count == 0;
+  result.errors = alone ? metrics(table.computed, table.measured) : result.errors_of_kept;
 }
 
 // Faults and accelerations of the samples of a table.

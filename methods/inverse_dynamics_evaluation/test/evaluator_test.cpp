@@ -130,6 +130,18 @@ TEST(Evaluate, LeavesSamplesOutOfTheSecondMetricsAlone) {
   EXPECT_THAT(evaluation.notes, Contains(HasSubstr("199 of 2000 samples repeat an earlier one")));
 }
 
+TEST(Evaluate, LeavesSamplesOfASecondSourceOutOfAllMetrics) {
+  JointLog log = recorded(2000);
+  for (const Index k : {400, 900, 1300}) {
+    log.q.col(k).setZero();
+    log.qd.col(k).setZero();
+    log.effort.col(k).setZero();
+  }
+  const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(kTorque));
+  EXPECT_EQ(evaluation.errors[0].count, 1997);
+  EXPECT_EQ(evaluation.errors[0].rmse, evaluation.errors_of_kept[0].rmse);
+}
+
 TEST(Evaluate, TakesCurrentsTimesDriveGains) {
   JointLog log = recorded();
   const MatrixXd torques = log.effort;

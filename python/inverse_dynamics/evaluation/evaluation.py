@@ -114,7 +114,7 @@ class Evaluation(ResultDirectory):
     qdd: Floats  # (N, n) rad/s^2 or m/s^2
     measured: Floats  # (N, n) N m or N: the torques that recorded efforts mean
     computed: Floats  # (N, n) N m or N; without gravity if the efforts are
-    errors: tuple[JointError, ...]  # over all samples
+    errors: tuple[JointError, ...]  # over all samples, but those of a second publisher
     errors_of_kept: tuple[JointError, ...]  # over samples.kept, the valid samples
     effort: Effort = field(default_factory=Effort)  # what recorded efforts mean
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
