@@ -81,7 +81,9 @@ class Comparison(ResultDirectory):
         columns = dict(zip(headings, self.rmse, strict=True))
         note = f"* {FITTED}" if any(e.fitted for e in self.evaluations) else ""
         units = self.evaluations[0].units
-        return of_joints("RMSE of each joint", self.joint_names, units, columns, note, means=columns)
+        return of_joints(
+            "RMSE of each joint", self.joint_names, units, columns, note, means=columns
+        )
 
     def plot(self) -> Figure:
         """Measured torque and that of each run over time, and the runs' errors, one row per joint."""

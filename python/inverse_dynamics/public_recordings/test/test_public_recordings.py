@@ -234,12 +234,12 @@ def test_demo_finds_what_was_fetched_and_the_variable_wins(tmp_path, monkeypatch
     monkeypatch.delenv("IDS_DATA_DIR", raising=False)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "xdg"))
     assert find_recordings() is None
-    (tmp_path / "xdg/inverse_dynamics/bags").mkdir(parents=True)
+    (tmp_path / "xdg/inverse_dynamics/bags/ur10_exciting_trajectory").mkdir(parents=True)
     assert find_recordings() == tmp_path / "xdg/inverse_dynamics/bags"
     monkeypatch.setenv("IDS_DATA_DIR", str(tmp_path / "other"))
     with pytest.raises(UserError, match="IDS_DATA_DIR: expected a directory"):
         find_recordings()
-    (tmp_path / "other/bags").mkdir(parents=True)
+    (tmp_path / "other/bags/mine").mkdir(parents=True)
     assert find_recordings() == tmp_path / "other/bags"
 
 
