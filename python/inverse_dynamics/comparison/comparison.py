@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.evaluation.evaluation import FITTED
 from inverse_dynamics.evaluation.figure import run_color, runs_figure
 from inverse_dynamics.evaluation.page import assumptions, report_run
+from inverse_dynamics.evaluation.tables import FITTED
 from inverse_dynamics.show.page import ReportSummary, render_page
 from inverse_dynamics.show.result import PAGE, ResultDirectory, files_of
 from inverse_dynamics.show.tables import ReportTable, of_joints

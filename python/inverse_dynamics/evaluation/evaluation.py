@@ -25,7 +25,7 @@ from inverse_dynamics.evaluation.exports import series_columns
 from inverse_dynamics.evaluation.ranges import outside_of_seen
 from inverse_dynamics.evaluation.run import Run, RunOptions, open_run
 from inverse_dynamics.evaluation.samples import MASKS, SampleReport
-from inverse_dynamics.evaluation.tables import evaluation_table, heading
+from inverse_dynamics.evaluation.tables import FITTED, evaluation_table, heading
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.outputs.files import write_text
 from inverse_dynamics.outputs.plain import json_text
@@ -59,12 +59,6 @@ __all__ = [
     "joint_errors",
     "open_run",
 ]
-
-FITTED = (
-    "the model was fitted to this recording, so its errors on other recordings are larger: see the held-out errors of "
-    "`ids identify`"
-)
-"""Note of an evaluation of what the model was fitted to."""
 
 CAUSE = "likely cause of the error: "
 """Prefix of the note that states a diagnosis."""

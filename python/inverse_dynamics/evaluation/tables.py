@@ -20,6 +20,13 @@ if TYPE_CHECKING:
     from inverse_dynamics.show.result import Line
 
 
+FITTED = (
+    "the model was fitted to this recording, so its errors on other recordings are larger: see the held-out errors of "
+    "`ids identify`"
+)
+"""Note of an evaluation of what the model was fitted to."""
+
+
 def heading(
     evaluation: Evaluation, samples: int | None = None, duration: float | None = None
 ) -> list[Line]:
@@ -69,9 +76,15 @@ def recordings_table(summaries: Sequence[EvaluationSummary]) -> ReportTable:
     units = [""] * len(first) if one_unit else [f" [{error.unit}]" for error in first]
     columns = [error.joint + unit for error, unit in zip(first, units, strict=True)]
     means = one_unit and len(first) > 1
+    marks = [" *" * (FITTED in summary.notes) for summary in summaries]
     rows: list[tuple[str | float, ...]] = [
-        (summary.name, *(error.rmse for error in summary.errors), *[summary.mean_rmse] * means)
-        for summary in summaries
+        (
+            f"{summary.name}{mark}",
+            *(error.rmse for error in summary.errors),
+            *[summary.mean_rmse] * means,
+        )
+        for summary, mark in zip(summaries, marks, strict=True)
     ]
     title = f"RMSE [{first[0].unit}]" if one_unit else "RMSE"
-    return ReportTable(title, ("recording", *columns, *["mean"] * means), rows)
+    note = f"* {FITTED}" * any(marks)
+    return ReportTable(title, ("recording", *columns, *["mean"] * means), rows, note)

@@ -19,9 +19,10 @@ from inverse_dynamics import FastModel, Solver, evaluate, read_joint_log, write_
 from inverse_dynamics._core import RobotDescription
 from inverse_dynamics.comparison.comparison import compare
 from inverse_dynamics.errors import RobotError, SolverError
-from inverse_dynamics.evaluation.evaluation import FITTED
 from inverse_dynamics.evaluation.files import read_evaluation
+from inverse_dynamics.evaluation.many_evaluations import summary_of
 from inverse_dynamics.evaluation.ranges import outside_of_seen
+from inverse_dynamics.evaluation.tables import FITTED, recordings_table
 from inverse_dynamics.identification import files as identifications
 from inverse_dynamics.identification.files import model_file_text, write_identification
 from inverse_dynamics.identification.hold_out import hold_out
@@ -31,6 +32,7 @@ from inverse_dynamics.identification.universal_robots import friction_request
 from inverse_dynamics.outputs.plain import plain
 from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.recordings.sketch import sketch_of
+from inverse_dynamics.recordings.time_window import TimeWindow
 from inverse_dynamics.robots import robot_files
 from inverse_dynamics.robots.link_parameters import turned
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot
@@ -72,6 +74,9 @@ def test_an_evaluation_of_what_the_model_was_fitted_to_says_so(found, tuesday, t
     assert compared.table().note == f"* {FITTED}"
     assert [run["fitted"] for run in compared.numbers()["runs"]] == [True, False]
     assert FITTED in compared.page()
+    table = recordings_table([summary_of(e, "tuesday", TimeWindow()) for e in (same, urdf)])
+    assert [row[0] for row in table.rows] == ["tuesday *", "tuesday"]
+    assert table.note == f"* {FITTED}"
 
 
 @pytest.fixture
