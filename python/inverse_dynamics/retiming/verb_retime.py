@@ -20,7 +20,7 @@ EPILOG = """\
 examples:
   ids retime waypoints.yaml --robot ur10_real --out fast
       a YAML file of waypoints (docs/retime.md), a table with columns position.JOINT, or a
-      recording of trajectory_msgs/JointTrajectory; times are ignored
+      recording of trajectory_msgs/JointTrajectory; times must increase, or all be zero
 
   ids retime picks.csv --robot ur10_real --deviation 0.05 --payload 3 --out fast
       straight lines that pass the waypoints by at most 0.05 rad, with 3 kg at the tip
