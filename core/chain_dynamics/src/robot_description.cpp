@@ -157,7 +157,7 @@ void readAxis(const UrdfElement& element, RobotDescription::Joint& joint) {
   }
 }
 
-// The limit of a velocity or effort. Some exporters write -1 where there is none.
+// A limit that is above zero. Some exporters write -1 where there is none.
 double greatest(const UrdfElement& limit, const char* key) {
   const double value = limit.number(key);
   if (value >= 0) return value;

@@ -177,7 +177,7 @@ def retime(
     robot
         As evaluate() takes it.
     limits
-        Torques and velocities that aren't among them are those of the robot description.
+        Those that aren't among them are those of the robot description.
     weight
         s/J. Above 0 the motion is slower and minimises about duration + weight * energy.
     rate
@@ -206,8 +206,14 @@ def retime(
         raise UserError(f"weight: expected a finite number, s/J, at least zero, got {weight:g}")
     arm = Arm(robot)
     options = options or RetimeOptions()
-    limits = described_limits(arm, limits)
+    stated, limits = limits, described_limits(arm, limits)
     notes = [*filter(None, [arm.guess]), *arm.solver.warnings, *_notes_of_velocities(arm, limits)]
+    if options.start_speed + options.end_speed > 0.0 and not (stated and len(stated.jerk)):
+        if len(limits.jerk):
+            notes.append(
+                "jerk isn't limited, as the description says, where a motion begins or ends at speed"
+            )
+        limits = _changed(limits, jerk=np.zeros(0))
     if not isinstance(path, JointPath):
         path, seams = _joint_path(path, arm, **shape)
         notes += seams
@@ -257,7 +263,7 @@ def sample_times(duration: float, rate: float) -> Floats:
 
 
 def described_limits(arm: Arm, given: MotionLimits | None = None) -> MotionLimits:
-    """Limits with those of torque and velocity that aren't given from the robot description.
+    """Limits with those that aren't given from the robot description.
 
     One number stands for all joints. Raises UserError where a joint has no torque limit.
     """
@@ -275,6 +281,10 @@ def described_limits(arm: Arm, given: MotionLimits | None = None) -> MotionLimit
     for name, limit in (("torque", "effort"), ("velocity", "velocity")):
         if not len(found[name]):
             found[name] = np.minimum(arm.limit(limit, np.inf), _UNLIMITED)
+    acceleration = np.minimum(arm.limit("acceleration", np.inf), arm.limit("deceleration", np.inf))
+    for name, limit in (("acceleration", acceleration), ("jerk", arm.limit("jerk", np.inf))):
+        if not len(found[name]) and np.isfinite(limit).any():
+            found[name] = np.minimum(limit, _UNLIMITED)
     lacking = [j for j, torque in zip(joints, found["torque"], strict=True) if torque == _UNLIMITED]
     if lacking:
         raise UserError(

@@ -353,6 +353,22 @@ def test_a_plan_that_contradicts_itself_or_the_robot_is_noted(tmp_path, robot, k
     assert found.numbers()["notes"] == found.notes
 
 
+def test_limits_of_urdf_1_2_count_for_speeding_up_and_for_slowing_down(tmp_path, robot):
+    limited = tmp_path / "limited.urdf"
+    urdf = URDF.read_text().replace("<robot ", '<robot version="1.2" ', 1)
+    urdf = urdf.replace('effort="150.0"', 'acceleration="9" deceleration="0.3" effort="150.0"', 1)
+    limited.write_text(urdf)
+    time, q, qd, qdd = plan()
+    (note,) = torques_of_plan(
+        tmp_path, replace(robot, urdf=limited), "table", time, q, qd, qdd
+    ).notes
+    k = int(np.argmax((qd[:, 2] * qdd[:, 2] < 0) & (np.abs(qdd[:, 2]) > 0.3013)))
+    assert note.startswith(
+        f"the acceleration of elbow_joint passes limits, first in row {k + 1} ({time[k]:g} s): expected "
+        "-0.3 to 0.3 rad/s^2 of elbow_joint, got 0.3"
+    )
+
+
 @pytest.mark.parametrize("points", [4, 7, 30, 300, 3000])
 def test_nothing_is_noted_of_a_sound_plan(tmp_path, robot, points):
     assert torques_of_plan(tmp_path, robot, "table", *plan(points)).notes == ()

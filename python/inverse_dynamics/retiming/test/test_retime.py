@@ -343,6 +343,28 @@ def test_limits_that_are_not_given_are_those_of_the_description(turner, given):
     assert limits.velocity == given.get("velocity", [3.0])
 
 
+def test_limits_of_urdf_1_2_are_kept_unless_others_are_given(turner, tmp_path):
+    path, limits = [[0.0], [9.0]], 'acceleration="4" deceleration="3" jerk="20" effort'
+    urdf = turner.read_text().replace("effort", limits)
+    (tmp_path / "old.urdf").write_text(urdf)
+    old = retime(path, tmp_path / "old.urdf")
+    assert not len(old.limits.acceleration)
+    assert any("<limit> acceleration is ignored: URDF knows it from 1.2 on" in n for n in old.notes)
+
+    newer = tmp_path / "newer.urdf"
+    newer.write_text(urdf.replace("<robot", '<robot version="1.2"', 1))
+    result = retime(path, newer, rate=1000.0)
+    assert result.notes == ()
+    assert (result.limits.acceleration, result.limits.jerk) == ([3.0], [20.0])
+    assert np.abs(result.qdd).max() <= 3.0 * (1 + 1e-3)
+    assert np.abs(np.diff(result.qdd[:-1], axis=0)).max() / 1e-3 <= 20.0 * (1 + 1e-2)
+    assert np.abs(old.qdd).max() > 4.0
+    given = retime(path, newer, MotionLimits(acceleration=[5.0], jerk=[1e4]))
+    assert np.abs(given.qdd).max() == pytest.approx(5.0, rel=2e-2)
+    at_speed = retime(path, newer, options=RetimeOptions(start_speed=1.0))
+    assert at_speed.notes[0].startswith("jerk isn't limited")
+
+
 def test_limits_and_units_of_a_model_without_a_description_are_its_own(tmp_path):
     model = tmp_path / "slide.yaml"
     model.write_text(SLIDE)
