@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,12 +45,12 @@ class FastModel {
       "FastModel.from_urdf(load_robot(\"ur10_simulated\").urdf)";
 
   FastModel(const chain_dynamics::Model& model, std::int64_t threads, const std::string& urdf = "",
-            const std::string& root = "")
+            const std::string& root = "", const std::map<std::string, double>& locked_joints = {})
       : model_(model),
         names_(model.chain.jointNames()),
         threads_(threads),
         fast_(model),
-        frames_(urdf, {root, names_, {}}) {
+        frames_(urdf, {root, names_, locked_joints}) {
     if (threads < 1) {
       throw ids::InvalidParameterValueException(
           ids::errorText("FastModel: argument threads", "", "1 or more", std::to_string(threads)));
@@ -94,14 +95,19 @@ std::vector<chain_dynamics::LinkParameters> linksOf(const Array& rows, py::ssize
 
 std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& root,
                                     const std::string& tip, const std::optional<Numbers3>& gravity,
+                                    const std::map<std::string, double>& locked_joints,
                                     std::int64_t threads) {
   chain_dynamics::UrdfOptions options;
+  options.locked_position = [&](const std::string& joint) {
+    const auto found = locked_joints.find(joint);
+    return found == locked_joints.end() ? std::nullopt : std::optional<double>(found->second);
+  };
   options.root = root;
   options.tip = tip;
   if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
   return std::make_unique<FastModel>(
       chain_dynamics::Model(chain_dynamics::chainFromUrdf(urdf.text, options)), threads, urdf.text,
-      root);
+      root, locked_joints);
 }
 
 std::unique_ptr<FastModel> fromFile(const std::string& path, std::int64_t threads) {
@@ -186,7 +192,8 @@ void bindMaking(py::class_<FastModel>& model) {
   const auto gravity = "gravity"_a, threads = "threads"_a;
   model
       .def_static("from_urdf", &fromUrdf, "urdf"_a, py::kw_only(), "root"_a = "", "tip"_a = "",
-                  gravity = py::none(), threads = 1,
+                  gravity = py::none(), "locked_joints"_a = std::map<std::string, double>(),
+                  threads = 1,
                   R"(Of a URDF, without the friction that it states.
 
 Parameters
@@ -197,6 +204,8 @@ root, tip : str, optional
     Links between which the chain is; by default the first and the last.
 gravity : sequence of 3 floats, optional
     m/s^2, in the axes of the root link.
+locked_joints : dict, optional
+    Positions (rad, m) of joints that are held, by name: of the chain, which lacks them, or beside it.
 threads : int, optional
     Among how many a large batch is shared.)")
       .def_static("from_file", &fromFile, "path"_a, py::kw_only(), threads = 1,

@@ -126,7 +126,7 @@ const char* typeOf(const DescribedJoint& joint) {
   return kNames[static_cast<std::size_t>(joint.type)];
 }
 
-/// What is stated; a velocity or effort of zero isn't, nor is a range from 0 to 0.
+/// What is stated; a limit of zero isn't, nor is a range from 0 to 0.
 std::map<std::string, double> limitsOf(const DescribedJoint& joint) {
   const auto& limits = joint.limits;
   std::map<std::string, double> stated;
@@ -134,7 +134,9 @@ std::map<std::string, double> limitsOf(const DescribedJoint& joint) {
     stated = {{"lower", limits.lower}, {"upper", limits.upper}};
   }
   for (const auto& [name, value] :
-       {std::pair("velocity", limits.velocity), std::pair("effort", limits.effort)}) {
+       {std::pair("velocity", limits.velocity), std::pair("effort", limits.effort),
+        std::pair("acceleration", limits.acceleration),
+        std::pair("deceleration", limits.deceleration), std::pair("jerk", limits.jerk)}) {
     if (value > 0 && std::isfinite(value)) stated.emplace(name, value);
   }
   return stated;
@@ -173,7 +175,8 @@ void bindRobotDescription(py::module_& module) {
           "axis", [](const Joint& joint) { return floats(joint.axis.normalized().eval()); },
           "(3,) of length 1, in the joint's frame")
       .def_property_readonly("limits", &limitsOf,
-                             "Those of lower, upper, velocity and effort that are stated.")
+                             "Those of lower, upper, velocity, effort, acceleration, deceleration "
+                             "and jerk that are stated.")
       .def_readonly("damping", &Joint::damping, "N m s/rad (prismatic N s/m); 0: not stated")
       .def_readonly("friction", &Joint::friction, "N m (prismatic N); 0: not stated")
       .def_property_readonly(

@@ -59,10 +59,14 @@ void checkLimits(const std::string& where, const JointLimits& limits) {
                      text(limits.lower) + " and " + text(limits.upper),
                      "leave out what is unknown");
   }
-  if (!(limits.velocity >= 0) || !(limits.effort >= 0)) {
-    throw ModelError(where, "velocity and effort limits", "numbers >= 0",
-                     text(limits.velocity) + " and " + text(limits.effort),
-                     "leave out what is unknown");
+  for (const auto& [what, limit] :
+       {std::pair("velocity", limits.velocity), std::pair("effort", limits.effort),
+        std::pair("acceleration", limits.acceleration),
+        std::pair("deceleration", limits.deceleration), std::pair("jerk", limits.jerk)}) {
+    if (!(limit >= 0)) {
+      throw ModelError(where, std::string(what) + " limit", "a number >= 0", text(limit),
+                       "leave out what is unknown");
+    }
   }
 }
 

@@ -111,6 +111,9 @@ JointLimits readLimits(LocatedMap map, JointType type) {
   }
   read("velocity", limits.velocity);
   read("effort", limits.effort);
+  read("acceleration", limits.acceleration);
+  read("deceleration", limits.deceleration);
+  read("jerk", limits.jerk);
   map.rejectOthers();
   return limits;
 }

@@ -79,7 +79,7 @@ const char* typeText(JointType type) {
                                           : "revolute";
 }
 
-/// `    key: {...}` of the limits that are stated; a velocity or effort of zero states none.
+/// `    key: {...}` of the limits that are stated; but for positions, zero states none.
 std::string limitsLine(const JointLimits& limits) {
   std::string text;
   const auto add = [&text](const char* key, double value, bool stated) {
@@ -90,6 +90,9 @@ std::string limitsLine(const JointLimits& limits) {
   add("upper", limits.upper, true);
   add("velocity", limits.velocity, limits.velocity > 0);
   add("effort", limits.effort, limits.effort > 0);
+  add("acceleration", limits.acceleration, limits.acceleration > 0);
+  add("deceleration", limits.deceleration, limits.deceleration > 0);
+  add("jerk", limits.jerk, limits.jerk > 0);
   return text.empty() ? "" : "    limits: {" + text + "}\n";
 }
 

@@ -50,7 +50,7 @@ const Vocabulary kInertia{{}, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}};
 const Vocabulary kEnd{{}, {"link"}};
 const Vocabulary kAxis{{}, {"xyz"}};
 const Vocabulary kLimit{
-    {}, {"lower", "upper", "effort", "velocity"}, {}, {"acceleration", "deceleration", "jerk"}};
+    {}, {"lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk"}};
 const Vocabulary kMimic{{}, {"joint", "multiplier", "offset"}};
 const Vocabulary kDynamics{{}, {"damping", "friction"}};
 
@@ -67,7 +67,7 @@ constexpr double kTwoTurns = 12.6;        // more is probably given in degrees
 // Parts of links and joints
 
 Matrix3<double> rotation(const UrdfElement& origin) {
-  if (!origin.has("quat_xyzw")) {
+  if (!origin.hasSince("1.1", "quat_xyzw")) {
     const Eigen::Vector3d rpy =
         origin.has("rpy") ? origin.vector("rpy") : Eigen::Vector3d(Eigen::Vector3d::Zero());
     origin.checkSize("<origin> rpy", rpy.cwiseAbs().maxCoeff(), kTwoTurns, "rad");
@@ -157,7 +157,7 @@ void readAxis(const UrdfElement& element, RobotDescription::Joint& joint) {
   }
 }
 
-// The limit of a velocity or effort. Some exporters write -1 where there is none.
+// A limit that is above zero. Some exporters write -1 where there is none.
 double greatest(const UrdfElement& limit, const char* key) {
   const double value = limit.number(key);
   if (value >= 0) return value;
@@ -175,6 +175,11 @@ void readLimits(const UrdfElement& element, RobotDescription::Joint& joint) {
   limit->reportUnknown(kLimit);
   joint.limits.effort = greatest(*limit, "effort");
   joint.limits.velocity = greatest(*limit, "velocity");
+  for (const auto& [key, value] : {std::pair("acceleration", &joint.limits.acceleration),
+                                   std::pair("deceleration", &joint.limits.deceleration),
+                                   std::pair("jerk", &joint.limits.jerk)}) {
+    if (limit->hasSince("1.2", key)) *value = greatest(*limit, key);
+  }
   const double lower = limit->number("lower", 0);
   const double upper = limit->number("upper", 0);
   if (joint.type != Type::kContinuous) {

@@ -182,7 +182,7 @@ std::size_t leafBelow(const RobotDescription& robot, std::size_t root) {
 // ---------------------------------------------------------------------------------------------
 // Joints that are held
 
-/// Where the joints beside the path and beyond the tip are held.
+/// Where joints are held: those beside the path and beyond the tip, and those on it whose position is given.
 class LockedJoints {
  public:
   LockedJoints(const RobotDescription& robot, const UrdfOptions& options, const Path& path)
@@ -197,7 +197,10 @@ class LockedJoints {
 
   bool onPath(std::size_t j) const { return on_path_[j]; }
 
-  /// Where a joint off the path has moved its link.
+  /// Whether the chain moves a joint of the path.
+  bool moves(std::size_t j) const { return isMovable(robot_.joints[j]) && !given_[j]; }
+
+  /// Where a joint that is held has moved its link.
   Transform<double> motion(std::size_t j) {
     const RobotDescription::Joint& joint = robot_.joints[j];
     auto X = Transform<double>::identity();
@@ -224,7 +227,6 @@ class LockedJoints {
       if (given_[j] && !used_[j]) {
         const std::string reason =
             !isMovable(joint) ? "the joint is fixed"
-            : onPath(j)       ? "the joint is on the path from root to tip"
             : joint.mimic     ? "the joint follows joint " + robot_.joints[joint.mimic->joint].name
             : !lump_attached  ? "attached bodies are ignored"
                               : "no moving link carries the joint";
@@ -247,7 +249,7 @@ class LockedJoints {
       followers.push_back(source);
       source = robot_.joints[source].mimic->joint;
       const bool endless = followers.size() > robot_.joints.size();
-      if (endless || (onPath(source) && isMovable(robot_.joints[source]))) {
+      if (endless || (onPath(source) && moves(source))) {
         throw ModelError(where(robot_.joints[followers.back()]), "<mimic>",
                          "an attached joint that can be held",
                          (endless ? "one that follows itself through joint "
@@ -302,7 +304,12 @@ class Builder {
     for (const Step& step : path_) {
       const RobotDescription::Joint& joint = robot_.joints[step.joint];
       if (!step.up) X_EU_ = X_EU_ * joint.placement;
-      if (isMovable(joint)) addJoint(joint, step.up);
+      if (locked_.moves(step.joint)) {
+        addJoint(joint, step.up);
+      } else {
+        const Transform<double> held = locked_.motion(step.joint);
+        X_EU_ = X_EU_ * (step.up ? held.inverse() : held);
+      }
       if (step.up) X_EU_ = X_EU_ * joint.placement.inverse();
       if (!links_.empty()) {
         const std::size_t link = step.up ? joint.parent : joint.child;

@@ -107,6 +107,15 @@ std::string UrdfElement::text(const char* key) const {
               similar.empty() ? "add it" : "is it misspelt as '" + similar + "'?");
 }
 
+bool UrdfElement::hasSince(const char* version, const char* key) const {
+  if (!has(key)) return false;
+  const char* const stated = element_->GetDocument()->RootElement()->Attribute("version");
+  if (stated != nullptr && finiteNumber(stated) >= finiteNumber(version)) return true;
+  findings_->addOnce(key, where() + ": " + tag() + " " + key + " is ignored: URDF knows it from " +
+                              version + " on; state <robot version=\"" + version + "\">");
+  return false;
+}
+
 double UrdfElement::number(const char* key) const {
   const std::string value = text(key);
   const auto number = finiteNumber(value);

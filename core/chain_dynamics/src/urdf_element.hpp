@@ -79,6 +79,9 @@ class UrdfElement {
   std::vector<double> numbers(const char* key, std::size_t count) const;
   Eigen::Vector3d vector(const char* key) const;
   bool has(const char* key) const { return element_->Attribute(key) != nullptr; }
+  /// Whether it has an attribute that URDF knows from this version on. A URDF that states an earlier
+  /// version, or none, which is 1.0, hasn't, and a warning says so [urdfdom].
+  bool hasSince(const char* version, const char* key) const;
 
   /// The child of that tag, of which there may be only one.
   std::optional<UrdfElement> child(const char* child_tag) const;

@@ -107,9 +107,9 @@ TEST(Chain, RefusesPartsThatMakeNoRobot) {
        "joint joint3: position limits: expected lower <= upper, got 1 and -1; leave out what is "
        "unknown"},
       {[](Parts& parts) { parts.joints[2].limits.velocity = -3; },
-       "joint joint3: velocity and effort limits: expected numbers >= 0, got -3 and inf; leave out "
-       "what "
-       "is unknown"},
+       "joint joint3: velocity limit: expected a number >= 0, got -3; leave out what is unknown"},
+      {[](Parts& parts) { parts.joints[2].limits.jerk = -5; },
+       "joint joint3: jerk limit: expected a number >= 0, got -5; leave out what is unknown"},
       {[](Parts& parts) { parts.links[1].mass = -0.5; },
        "link moved by joint joint2: mass: expected a number >= 0 [kg], got -0.5"},
       {[](Parts& parts) { parts.joints[1].rotor_inertia = -1e-3; },

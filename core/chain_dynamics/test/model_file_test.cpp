@@ -34,6 +34,8 @@ TEST(ModelFile, DocumentedFileIsReadAndItsCheckRowsHold) {
   EXPECT_THAT(robot.chain.jointNames(), ElementsAre("cart", "hinge"));
   EXPECT_EQ(robot.chain.joints()[0].type, JointType::kPrismatic);
   EXPECT_EQ(robot.chain.joints()[0].limits.effort, 100);
+  EXPECT_EQ(robot.chain.joints()[0].limits.acceleration, 5);
+  EXPECT_EQ(robot.chain.joints()[0].limits.jerk, 50);
   EXPECT_EQ(robot.chain.joints()[1].type, JointType::kContinuous);
   EXPECT_EQ(robot.chain.joints()[1].limits.effort, std::numeric_limits<double>::infinity());
   EXPECT_EQ(robot.chain.joints()[1].rotor_inertia, 0.05);

@@ -48,6 +48,9 @@ void expectSame(const Model& written, const Model& read) {
     EXPECT_EQ(other.limits.upper, one.limits.upper);
     EXPECT_EQ(other.limits.velocity, one.limits.velocity);
     EXPECT_EQ(other.limits.effort, one.limits.effort);
+    EXPECT_EQ(other.limits.acceleration, one.limits.acceleration);
+    EXPECT_EQ(other.limits.deceleration, one.limits.deceleration);
+    EXPECT_EQ(other.limits.jerk, one.limits.jerk);
     if (written.row_parameters.empty()) {
       EXPECT_EQ(read.chain.links()[j].toVector(), written.chain.links()[j].toVector());
     }
@@ -64,6 +67,8 @@ TEST(ModelFileWriter, ModelsOfThisProjectComeBack) {
     const Model robot = modelFromFile(kRobots + "/models/" + name + ".yaml");
     expectSame(robot, model(modelFileText(robot)));
   }
+  const Model documented = model(documentedFile());
+  expectSame(documented, model(modelFileText(documented)));
 }
 
 TEST(ModelFileWriter, WhatIdentificationFindsComesBackDigitByDigit) {

@@ -112,8 +112,12 @@ TEST(RobotDescription, MimicJointsReferToTheJointTheyFollow) {
 }
 
 TEST(RobotDescription, OriginsTurnByRollPitchYawOrByAQuaternion) {
-  const auto rotation = [](const std::string& origin) {
-    return robotFromUrdf(hinge(inertial(), "<origin " + origin + "/>")).joints[0].placement.R;
+  const auto turned = [](const std::string& origin) {
+    return replaced(hinge(inertial(), "<origin " + origin + "/>"), "<robot",
+                    "<robot version='1.1'");
+  };
+  const auto rotation = [&turned](const std::string& origin) {
+    return robotFromUrdf(turned(origin)).joints[0].placement.R;
   };
   // yaw about z, after pitch about y, after roll about x
   const Eigen::Matrix3d R = rotation("rpy='0.1 0.2 0.3'");
@@ -125,12 +129,43 @@ TEST(RobotDescription, OriginsTurnByRollPitchYawOrByAQuaternion) {
   const Eigen::Matrix3d half = rotation("quat_xyzw='6 0 8 0'");
   EXPECT_LT((half * Eigen::Vector3d(0.6, 0, 0.8) - Eigen::Vector3d(0.6, 0, 0.8)).norm(), kRounding);
   EXPECT_NEAR(half.trace(), -1, kRounding);
-  EXPECT_THAT(urdfError(hinge(inertial(), "<origin quat_xyzw='0 0 0 0'/>")),
+  EXPECT_THAT(urdfError(turned("quat_xyzw='0 0 0 0'")),
               HasSubstr("joint j: <origin> quat_xyzw: expected a rotation"));
-  EXPECT_THAT(urdfError(hinge(inertial(), "<origin quat_xyzw='0 0 1'/>")),
+  EXPECT_THAT(urdfError(turned("quat_xyzw='0 0 1'")),
               HasSubstr("expected 4 finite numbers, got 3"));
-  EXPECT_THAT(urdfError(hinge(inertial(), "<origin quat_xyzw='0 0 0 1' rpy='0 0 0'/>")),
+  EXPECT_THAT(urdfError(turned("quat_xyzw='0 0 0 1' rpy='0 0 0'")),
               HasSubstr("expected either rpy or quat_xyzw, got both"));
+}
+
+TEST(RobotDescription, QuaternionsCountFrom1Point1OnLimitsOfAccelerationFrom1Point2On) {
+  const std::string urdf =
+      replaced(hinge(inertial(),
+                     "<origin quat_xyzw='0.5 0.5 0.5 0.5'/><limit effort='1' velocity='2' "
+                     "acceleration='4' deceleration='3' jerk='20'/>"),
+               "<robot", "<robot version='1.2'");
+  const RobotDescription third = robotFromUrdf(urdf);
+  EXPECT_NEAR(third.joints[0].placement.R(1, 0), 1, kRounding);  // x becomes y, y becomes z
+  EXPECT_EQ(third.joints[0].limits.acceleration, 4);
+  EXPECT_EQ(third.joints[0].limits.deceleration, 3);
+  EXPECT_EQ(third.joints[0].limits.jerk, 20);
+  EXPECT_THAT(third.warnings, IsEmpty());
+
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  const RobotDescription second = robotFromUrdf(replaced(urdf, "'1.2'", "'1.1'"));
+  EXPECT_NEAR(second.joints[0].placement.R(1, 0), 1, kRounding);
+  EXPECT_EQ(second.joints[0].limits.acceleration, kNoLimit);
+  EXPECT_EQ(second.joints[0].limits.jerk, kNoLimit);
+  EXPECT_THAT(
+      second.warnings,
+      Contains(HasSubstr("joint j: <limit> jerk is ignored: URDF knows it from 1.2 on; state "
+                         "<robot version=\"1.2\">")));
+
+  // without a version, as in 1.0: rpy counts
+  const RobotDescription first = robotFromUrdf(
+      replaced(replaced(urdf, " version='1.2'", ""), "<origin", "<origin rpy='0.1 0 0'"));
+  EXPECT_EQ(first.joints[0].rpy, Eigen::Vector3d(0.1, 0, 0));
+  EXPECT_NEAR(first.joints[0].placement.R(2, 1), std::sin(0.1), kRounding);
+  EXPECT_THAT(first.warnings, Contains(HasSubstr("<origin> quat_xyzw is ignored")));
 }
 
 TEST(RobotDescription, VersionsOfUrdf1AreRead) {
@@ -310,13 +345,13 @@ TEST(RobotDescription, NotTooManyWarningsAreKept) {
 TEST(RobotDescription, WhatOthersReadIsNoWarning) {
   const std::string looks =
       "<visual><geometry><mesh/></geometry><orgin/></visual><collision/><sensor/><drake:x/>";
-  const std::string urdf = robot(
-      link("base", looks) + link("bob", looks + inertial()) +
-      joint("j", "continuous", "base", "bob",
-            "<calibration rising='0'/><safety_controller k_velocity='1'/>"
-            "<limit effort='1' velocity='1' acceleration='2'/><drake:controller_gains p='1'/>") +
-      "<material name='m'/><gazebo><plugin/></gazebo><transmission/><ros2_control/>"
-      "<!-- a comment --><drake:joint/>");
+  const std::string urdf =
+      robot(link("base", looks) + link("bob", looks + inertial()) +
+            joint("j", "continuous", "base", "bob",
+                  "<calibration rising='0'/><safety_controller k_velocity='1'/>"
+                  "<limit effort='1' velocity='1'/><drake:controller_gains p='1'/>") +
+            "<material name='m'/><gazebo><plugin/></gazebo><transmission/><ros2_control/>"
+            "<!-- a comment --><drake:joint/>");
   EXPECT_THAT(warnings(replaced(urdf, "<robot ", "<robot xmlns:drake='d' xmlns='u' d:x='1' ")),
               IsEmpty());
 }

@@ -9,9 +9,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chain_dynamics/tip_kinematics.hpp"
@@ -231,6 +234,15 @@ std::string armWithAttachments(const std::string& finger = "") {
                            "<axis xyz='0 1 0'/>" + std::string(kLimit) + finger));
 }
 
+/// What holds joints, by name.
+std::function<std::optional<double>(const std::string&)> positions(
+    const std::map<std::string, double>& held) {
+  return [held](const std::string& name) {
+    const auto found = held.find(name);
+    return found == held.end() ? std::nullopt : std::optional<double>(found->second);
+  };
+}
+
 /// The same, all of it welded on: with the camera moved along its slider, and the finger turned.
 std::string armWithWeldedAttachments(const std::string& focus, const std::string& grip) {
   return arm("",
@@ -254,7 +266,7 @@ TEST(Urdf, AttachedBodiesAreLumpedWithTheirJointsAtZero) {
 
 TEST(Urdf, AttachedBodiesAreHeldAtTheirLockedPositions) {
   UrdfOptions options = between("base", "tool");
-  options.locked_position = [](const std::string& name) { return name == "focus" ? 0.15 : 0.4; };
+  options.locked_position = positions({{"focus", 0.15}, {"grip", 0.4}});
   const auto locked = chainFromUrdf(armWithAttachments(), options);
   const auto welded =
       chainFromUrdf(armWithWeldedAttachments("0.15", "0.4"), between("base", "tool"));
@@ -279,9 +291,9 @@ TEST(Urdf, AttachedBodiesCanBeIgnored) {
 TEST(Urdf, AttachedMimicJointFollowsTheJointItMimics) {
   const std::string mimic = "<mimic joint='focus' multiplier='2' offset='0.1'/>";
   UrdfOptions options = between("base", "tool");
-  options.locked_position = [](const std::string& name) { return name == "focus" ? 0.15 : 99.0; };
+  options.locked_position = positions({{"focus", 0.15}, {"grip", 99}});
   const auto following = chainFromUrdf(armWithAttachments(mimic), options);
-  options.locked_position = [](const std::string& name) { return name == "focus" ? 0.15 : 0.4; };
+  options.locked_position = positions({{"focus", 0.15}, {"grip", 0.4}});
   const auto locked = chainFromUrdf(armWithAttachments(), options);
   EXPECT_LT(difference(someTorques(following), someTorques(locked)), kRounding);
 }
@@ -311,14 +323,41 @@ TEST(Urdf, LockedPositionThatIsNotFiniteIsAnError) {
   UrdfOptions options = between("base", "tool");
   options.locked_position = [](const std::string&) { return std::nan(""); };
   EXPECT_THAT(urdfError(armWithAttachments(), options),
-              AllOf(HasSubstr("joint focus: locked position"), HasSubstr("got nan")));
+              AllOf(HasSubstr("joint shoulder: locked position"), HasSubstr("got nan")));
+}
+
+TEST(Urdf, JointsOfThePathWithALockedPositionAreHeldThere) {
+  // from the base, and held by the tool
+  for (const auto& [root, tip] : {std::pair("base", "tool"), std::pair("tool", "base")}) {
+    UrdfOptions options = between(root, tip);
+    options.gravity = Eigen::Vector3d(1, -2, -9.81);
+    const Chain whole = chainFromUrdf(armWithAttachments(), options);
+    for (const std::string held : {"shoulder", "elbow"}) {
+      options.locked_position = positions({{held, 0.7}});
+      const Chain chain = chainFromUrdf(armWithAttachments(), options);
+      const auto n = static_cast<Eigen::Index>(whole.jointCount());
+      ASSERT_EQ(chain.jointCount(), n - 1);
+
+      Eigen::VectorXd q(n), qd(n), qdd(n), tau(n), left(n - 1);
+      Eigen::MatrixXd state(3, n - 1);
+      for (Eigen::Index i = 0, k = 0; i < n; ++i) {
+        const bool moves = whole.jointNames()[static_cast<std::size_t>(i)] != held;
+        q[i] = moves ? 0.3 : 0.7, qd[i] = moves ? -1.2 : 0, qdd[i] = moves ? 2 : 0;
+        if (moves) state.col(k++) << q[i], qd[i], qdd[i];
+      }
+      torques(whole, q, qd, qdd, tau);
+      torques(chain, state.row(0), state.row(1), state.row(2), left);
+      for (Eigen::Index i = 0, k = 0; i < n; ++i) {
+        if (whole.jointNames()[static_cast<std::size_t>(i)] == held) continue;
+        EXPECT_NEAR(left[k++], tau[i], kRounding) << held << " of " << root;
+      }
+    }
+  }
 }
 
 TEST(Urdf, LockedPositionsThatHaveNoInfluenceAreAWarning) {
   const auto warnings = [](const std::string& urdf, UrdfOptions options, const std::string& joint) {
-    options.locked_position = [joint](const std::string& name) {
-      return name == joint ? std::optional<double>(0.3) : std::nullopt;
-    };
+    options.locked_position = positions({{joint, 0.3}});
     std::vector<std::string> found = chainFromUrdf(urdf, options).warnings();
     const auto others = [](const std::string& text) {
       return text.find("locked position") == std::string::npos;
@@ -329,10 +368,6 @@ TEST(Urdf, LockedPositionsThatHaveNoInfluenceAreAWarning) {
   const std::string urdf = armWithAttachments("<mimic joint='focus'/>");
   UrdfOptions options = between("base", "tool");
   EXPECT_THAT(warnings(urdf, options, "focus"), IsEmpty());
-  EXPECT_THAT(
-      warnings(urdf, options, "elbow"),
-      ElementsAre("URDF:8: joint elbow: its locked position isn't used: the joint is on the "
-                  "path from root to tip"));
   EXPECT_THAT(warnings(urdf, options, "weld"), ElementsAre(HasSubstr("the joint is fixed")));
   EXPECT_THAT(warnings(urdf, options, "grip"),
               ElementsAre(HasSubstr("the joint follows joint focus")));

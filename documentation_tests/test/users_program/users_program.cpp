@@ -16,6 +16,8 @@
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/torque_derivatives.hpp>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -121,7 +123,9 @@ TEST(UsersProgram, ReadsCopiesChangesAndFreesModels) {
 TEST(UsersProgram, ComputesWithTheTemplatesWhatTheLibraryComputes) {
   chain_dynamics::UrdfOptions options;
   const VectorXd held = VectorXd::Constant(5, 0.25);
-  options.locked_position = [held](const std::string&) { return held[0]; };
+  options.locked_position = [held](const std::string& joint) {
+    return joint == "finger" ? std::optional<double>(held[0]) : std::nullopt;
+  };
   options.root = "base_link";
   options.tip = "tool0";
   const chain_dynamics::Chain chain =

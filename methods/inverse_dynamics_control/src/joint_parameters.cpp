@@ -46,7 +46,8 @@ OwnedVector jointNumbers(const std::string& name, const std::vector<double>& val
 DescribedLimits describedLimits(const std::string& robot_description,
                                 const std::vector<std::string>& joints) {
   const auto n = static_cast<Eigen::Index>(joints.size());
-  DescribedLimits found{ReferenceLimits::none(n), ReferenceLimits::none(n).velocity};
+  const ReferenceLimits none = ReferenceLimits::none(n);
+  DescribedLimits found{none, none.velocity, none.velocity};
   if (robot_description.empty()) return found;
   const RobotDescription robot = described(robot_description);
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -54,6 +55,9 @@ DescribedLimits describedLimits(const std::string& robot_description,
     if (joint == RobotDescription::kNone) continue;
     const chain_dynamics::JointLimits& limits = robot.joints[joint].limits;
     found.effort[j] = limits.effort;
+    found.jerk[j] = limits.jerk;
+    found.reference.acceleration[j] = limits.acceleration;
+    found.reference.deceleration[j] = limits.deceleration;
     found.reference.velocity[j] = limits.velocity;
     found.reference.lower[j] = limits.lower;
     found.reference.upper[j] = limits.upper;

@@ -33,8 +33,8 @@ Fault faultOf(const Reference& desired, const ReferenceLimits& limits,
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     double q = desired.q[j];
-    const double qd = desired.qd[j];
-    if (!std::isfinite(q) || !std::isfinite(qd) || !std::isfinite(desired.qdd[j])) {
+    const double qd = desired.qd[j], qdd = desired.qdd[j];
+    if (!std::isfinite(q) || !std::isfinite(qd) || !std::isfinite(qdd)) {
       return {StopReason::kNotFinite, j};
     }
     if (limits.upper[j] - limits.lower[j] <= kTurn) {  // wider ones count turns: of a cable
@@ -45,6 +45,8 @@ Fault faultOf(const Reference& desired, const ReferenceLimits& limits,
       return {StopReason::kPosition, j};
     }
     if (std::abs(qd) > limits.velocity[j] + kRounding) return {StopReason::kVelocity, j};
+    const double most = qd * qdd < 0 ? limits.deceleration[j] : limits.acceleration[j];
+    if (std::abs(qdd) > most + kRounding) return {StopReason::kAcceleration, j};
   }
   return {};
 }
@@ -53,9 +55,8 @@ Fault faultOf(const Reference& desired, const ReferenceLimits& limits,
 
 ReferenceLimits ReferenceLimits::none(Eigen::Index joints) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return {Eigen::VectorXd::Constant(joints, -kInfinity),
-          Eigen::VectorXd::Constant(joints, kInfinity),
-          Eigen::VectorXd::Constant(joints, kInfinity)};
+  const Eigen::VectorXd unlimited = Eigen::VectorXd::Constant(joints, kInfinity);
+  return {-unlimited, unlimited, unlimited, unlimited, unlimited};
 }
 
 const char* text(StopReason reason) noexcept {
@@ -68,6 +69,8 @@ const char* text(StopReason reason) noexcept {
       return "the reference's position lies beyond its limits";
     case StopReason::kVelocity:
       return "the reference's velocity lies beyond its limit";
+    case StopReason::kAcceleration:
+      return "the reference's acceleration lies beyond its limit";
     case StopReason::kStale:
       return "no new reference came while the last one still moves";
     case StopReason::kWrongSize:
@@ -87,6 +90,10 @@ ReferenceGuard::ReferenceGuard(ReferenceLimits limits,
   const std::string where = "reference guard: ";
   requireJointNumbers(where + "velocity limit", limits_.velocity, Range::kPositiveOrAbsent, "rad/s",
                       joint_names);
+  requireJointNumbers(where + "acceleration limit", limits_.acceleration, Range::kPositiveOrAbsent,
+                      "rad/s^2", joint_names);
+  requireJointNumbers(where + "deceleration limit", limits_.deceleration, Range::kPositiveOrAbsent,
+                      "rad/s^2", joint_names);
   requireJointNumbers(where + "lower position limit", limits_.lower, Range::kAny, "rad",
                       joint_names);
   requireJointNumbers(where + "upper position limit", limits_.upper, Range::kAny, "rad",

@@ -13,7 +13,9 @@ namespace inverse_dynamics_control::reference_guard_test {
 constexpr double kPeriod = 0.1;  // s
 const std::vector<std::string> kNames = {"a", "b"};
 
-ReferenceLimits limits() { return {vec({-1.0, -2.0}), vec({1.0, 2.0}), vec({0.5, 3.0})}; }
+ReferenceLimits limits() {
+  return {vec({-1.0, -2.0}), vec({1.0, 2.0}), vec({0.5, 3.0}), vec({4.0, 4.0}), vec({2.0, 2.0})};
+}
 
 ReferenceGuard guard() { return {limits(), vec({1.0, 1.0}), kNames}; }
 
@@ -32,7 +34,7 @@ TEST(ReferenceGuard, RestsWhereItStartsUntilTheFirstReference) {
 TEST(ReferenceGuard, SoundReferencesPassAsTheyAre) {
   ReferenceGuard g = guard();
   g.start(vec({0.0, 0.0}));
-  const Reference desired = moving();
+  const Reference desired = referenceOf(vec({0.2, 0.3}), vec({0.4, -2.0}), vec({-1.9, -3.9}));
   const Reference& followed = g.next(desired, kPeriod);
   EXPECT_EQ(followed.q, desired.q);
   EXPECT_EQ(followed.qd, desired.qd);
@@ -55,6 +57,8 @@ std::vector<Case> unsound() {
           {referenceOf(vec({1.1, 0.0}), zero, zero), StopReason::kPosition, 0},
           {referenceOf(vec({0.0, -2.1}), zero, zero), StopReason::kPosition, 1},
           {referenceOf(zero, vec({-0.6, 0.0}), zero), StopReason::kVelocity, 0},
+          {referenceOf(zero, zero, vec({0.0, -4.1})), StopReason::kAcceleration, 1},
+          {referenceOf(zero, vec({-0.1, 0.0}), vec({2.1, 0.0})), StopReason::kAcceleration, 0},
           {Reference(3), StopReason::kWrongSize, -1}};
 }
 

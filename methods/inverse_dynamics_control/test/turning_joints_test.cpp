@@ -123,7 +123,8 @@ TEST(TurningJoints, AGuardedLawStopsAsIfPositionsWereUnbounded) {
 }
 
 TEST(TurningJoints, LimitsOfAContinuousJointHoldForAnyTurn) {
-  const ReferenceLimits limits{vec({-2.0, -2.0}), vec({2.0, 2.0}), vec({kInfinity, kInfinity})};
+  ReferenceLimits limits = ReferenceLimits::none(2);
+  limits.lower.setConstant(-2.0), limits.upper.setConstant(2.0);
   ReferenceGuard guard(limits, vec({1.0, 1.0}), {"a", "b"},
                        {JointType::kContinuous, JointType::kRevolute});
   const Eigen::VectorXd zero = vec({0.0, 0.0});
@@ -138,7 +139,8 @@ TEST(TurningJoints, LimitsOfAContinuousJointHoldForAnyTurn) {
 }
 
 TEST(TurningJoints, LimitsWiderThanATurnCountTurns) {
-  const ReferenceLimits limits{vec({-10.0, -10.0}), vec({10.0, 10.0}), vec({kInfinity, kInfinity})};
+  ReferenceLimits limits = ReferenceLimits::none(2);
+  limits.lower.setConstant(-10.0), limits.upper.setConstant(10.0);
   ReferenceGuard guard(limits, vec({1.0, 1.0}), {"a", "b"}, arm()->jointTypes());
   const Eigen::VectorXd zero = vec({0.0, 0.0});
   guard.start(zero);

@@ -33,15 +33,21 @@ _RATES = {  # velocity over slope of the positions
     0.001: "krad/s",
 }
 _CLOCKS = {1000.0: "ms", 1e6: "us", 1e9: "ns", 1e-3: "thousands of seconds", 60.0: "1/60 s"}
-_TURNS = 4 * np.pi  # rad: joints without limits seldom turn on
+TURNS = 4 * np.pi  # rad: joints without limits seldom turn on
 _GAP = 5.0  # times the usual distance of samples: across a longer one, time may be wrong
 _BEYOND = 1.2  # times the limit
 _CLOCK = 1.12  # least factor of time that efforts distinguish from wrong inertias
 
 
-def contradictions(samples: Pieces, arm: ArmModel) -> list[tuple[Mistake, Pieces]]:
-    """Contradictions of velocities, positions and time that explain the same, and the samples without each."""
-    way, integral, moves = _ways(samples)
+def contradictions(
+    samples: Pieces, arm: ArmModel, ways: tuple[Floats, Floats, Mask] | None = None
+) -> list[tuple[Mistake, Pieces]]:
+    """Contradictions of velocities, positions and time that explain the same, and the samples without each.
+
+    ways: (K, n) by how much positions change, by how much velocities say, and the joints (n,) that move; by default
+    those of the pieces.
+    """
+    way, integral, moves = ways or _ways(samples)
     power = np.maximum((integral**2).sum(axis=0), 1e-300)
     rate = (way * integral).sum(axis=0) / power  # positions change so many times as fast
     total = np.maximum((way**2).sum(axis=0), 1e-300)
@@ -163,7 +169,7 @@ def _with_slopes(samples: Pieces, wrong: Mask) -> Pieces:
 def beyond_limits(view: View) -> Mask:
     """(n,) joints that turn and are far beyond their limits, or beyond two turns without any."""
     greatest, stated = np.abs(view.motion[0]).max(axis=0), _stated_limits(view)
-    limit = np.where(np.isfinite(stated), stated, _TURNS)
+    limit = np.where(np.isfinite(stated), stated, TURNS)
     return np.asarray(~view.prismatic & (greatest > _BEYOND * limit))
 
 

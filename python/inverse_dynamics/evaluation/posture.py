@@ -13,6 +13,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from inverse_dynamics._core import RobotDescription
 from inverse_dynamics.recordings.log_format import LogFormat
 from inverse_dynamics.recordings.recordings import position_ranges
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from inverse_dynamics.arrays import Parameter
+    from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.robots.robots import Robot
 
 LOCKED = "locked_joints."
@@ -92,6 +95,23 @@ def posture_of(
         elif abs(position - mean) > _STILL[unit]:
             others.append(f"{joint} at {mean:.4g} {unit}, locked_joints at {position:.4g} {unit}")
     return Posture(held, tuple(_notes(told, moving, others)), bool(moving))
+
+
+def still_joints(evaluations: Sequence[Evaluation]) -> Posture:
+    """Where joints of the chain are held that stand still in all recordings: they show neither friction nor inertia."""
+    low = np.min([e.log.q.min(axis=0) for e in evaluations], axis=0)
+    high = np.max([e.log.q.max(axis=0) for e in evaluations], axis=0)
+    units = ["m" if unit == "N" else "rad" for unit in evaluations[0].units]
+    found = {
+        joint: (float(q), unit)
+        for joint, q, way, unit in zip(
+            evaluations[0].joint_names, (low + high) / 2, high - low, units, strict=True
+        )
+        if way < _STILL[unit]
+    }
+    held = listed([f"{joint} at {q:.4g} {unit}" for joint, (q, unit) in found.items()])
+    note = f"held, as they stand still: {held}; the model is that of the other joints, and of this posture"
+    return Posture({f"{LOCKED}{joint}": q for joint, (q, _) in found.items()}, (note,))
 
 
 def carried_joints(robot: RobotDescription, chain: Sequence[str], root: str = "") -> dict[str, str]:

@@ -77,8 +77,8 @@ class ExcitationOptions:
     """Constraints of a motion, and its purpose."""
 
     duration: float = 0.0  # s; 0: 20, or 8 for a payload
-    share: float = 0.8  # of the limits of position, velocity, acceleration and effort
-    time_to_full_speed: float = 0.5  # s, what limits accelerations, since a URDF doesn't
+    share: float = 0.8  # of the limits of position, velocity, acceleration, jerk and effort
+    time_to_full_speed: float = 0.5  # s, what limits accelerations besides the URDF
     slow: float = 0.2  # share of the duration, for slow reversals; not for a payload
     payload: bool = False  # whether a body at the tip is to be identified, instead of the arm
     clearance: float = 0.01  # m, from itself and from the table

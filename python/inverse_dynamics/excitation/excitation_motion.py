@@ -82,7 +82,7 @@ class MotionFamily:
         count = max(poses) + 1
         frequency = np.pi * np.arange(count)[:, None] / duration
         slowness = 2.0 / (upper - lower) + frequency / limits.velocity
-        slowness = slowness + frequency**2 / limits.acceleration
+        slowness = slowness + frequency**2 / limits.acceleration + frequency**3 / limits.jerk
         amplitudes = np.where((frequency == 0.0) | moving, 1.0 / slowness, 0.0)
         return cls(
             joint_names=joint_names,

@@ -72,7 +72,7 @@ def _declare_limits(limits: Options) -> None:
     )
     limits.add(
         "--share P",
-        "share of the limits of position, velocity, acceleration and effort (default: 0.8)",
+        "share of the limits of position, velocity, acceleration, jerk and effort (default: 0.8)",
         share,
     )
     limits.add(

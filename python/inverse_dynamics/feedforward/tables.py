@@ -27,6 +27,7 @@ def load_numbers(result: TrajectoryTorques) -> dict[str, Any]:
         "gravity": robot.gravity,
         **result.energy.numbers,
         "joints": result.loads,
+        "notes": result.notes,
     }
 
 

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics._core import check_torques
+from inverse_dynamics.diagnosis.plans import Plan, beyond_limits, contradictions
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.feedforward.tables import load_lines, load_numbers
 from inverse_dynamics.progress import no_progress
@@ -26,7 +27,7 @@ from inverse_dynamics.recordings.joint_trajectories import JointTrajectory, read
 from inverse_dynamics.recordings.log_format import LogFormat
 from inverse_dynamics.recordings.table_logs import add_derivatives, read_motion
 from inverse_dynamics.recordings.tables import open_table
-from inverse_dynamics.recordings.times import check_seconds
+from inverse_dynamics.recordings.times import check_increasing, check_seconds
 from inverse_dynamics.recordings.vocabulary import ACCELERATION, POSITION, VELOCITY
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.motion_energy import MotionEnergy
@@ -41,8 +42,11 @@ if TYPE_CHECKING:
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.tables import Table
 
-_FAR_LONGER = 100.0  # times; milliseconds make it 1000 times
 _WHY = "torques can't be computed without them"
+
+States = tuple[
+    "Floats", "list[Floats]", Plan
+]  # time; q, qd, qdd of torques; what of them is planned
 
 
 @dataclass(frozen=True)
@@ -113,6 +117,9 @@ def trajectory_torques(
 ) -> TrajectoryTorques:
     """Compute the torques of each point of each trajectory.
 
+    Notes name velocities that contradict positions, zero velocities in a motion, jumps, and limits of the robot
+    description that positions, velocities, accelerations or torques pass.
+
     Parameters
     ----------
     path
@@ -125,7 +132,7 @@ def trajectory_torques(
     Raises
     ------
     UserError
-        BagError, RobotError, SolverError.
+        BagError, also for times that don't increase or aren't seconds; RobotError, SolverError.
     """
     path = Path(path)
     if not isinstance(robot, Robot):
@@ -141,10 +148,10 @@ def trajectory_torques(
     else:
         trajectories = read_joint_trajectories(path, topic, progress)
         states = [_states_of_message(trajectory, joints) for trajectory in trajectories]
-    if not any(len(time) for time, _ in states):
+    if not any(len(time) for time, *_ in states):
         raise BagError(f"{path}: expected points of a trajectory, got none")
     progress("computing", 0, len(states))
-    torques = [solver.torques(*state) if len(time) else state[0] for time, state in states]
+    torques = [solver.torques(*state) if len(time) else state[0] for time, state, _ in states]
     for number, computed in enumerate(torques, 1):
         where = f"{path}, trajectory {number}"
         check_torques(where, list(solver.joint_names), list(arm.units), computed)
@@ -155,53 +162,66 @@ def trajectory_torques(
         joint_names=joints,
         units=arm.units,
         limits=arm.limit("effort", np.inf),
-        times=tuple(time for time, _ in states),
+        times=tuple(time for time, *_ in states),
         torques=tuple(torques),
         energy=MotionEnergy.together(
             MotionEnergy.of(solver, time, state[0], state[1], computed)
-            for (time, state), computed in zip(states, torques, strict=True)
+            for (time, state, _), computed in zip(states, torques, strict=True)
             if len(time)
         ),
         trajectories=tuple(trajectories),
         topic=trajectories[0].topic if trajectories else "",
-        notes=(*notes, *filter(None, [arm.guess]), *solver.warnings),
+        notes=(
+            *notes,
+            *_findings(states, torques, arm),
+            *filter(None, [arm.guess]),
+            *solver.warnings,
+        ),
     )
+
+
+def _findings(states: Sequence[States], torques: Sequence[Floats], arm: Arm) -> list[str]:
+    """Of each kind that of the first trajectory, and how many others have such."""
+    found: dict[str, list[str]] = {}
+    for number, ((time, _, plan), computed) in enumerate(zip(states, torques, strict=True), 1):
+        if not len(time):
+            continue
+        plan = replace(plan, torques=computed)
+        of_plan = f"trajectory {number}: " if len(states) > 1 else ""
+        for kind, text in {**contradictions(plan, arm), **beyond_limits(plan, arm)}.items():
+            found.setdefault(kind, []).append(f"{of_plan}{text}")
+    return [
+        texts[0] + (f"; likewise in {counted(len(texts) - 1, 'other')}" if texts[1:] else "")
+        for texts in found.values()
+    ]
 
 
 def _states_of_table(
     table: Table, joints: Sequence[str], form: LogFormat, progress: Progress
-) -> tuple[tuple[Floats, list[Floats]], tuple[str, ...]]:
+) -> tuple[States, tuple[str, ...]]:
     motion = read_motion(table, joints, form, (POSITION,), progress)
     if table.incomplete:
         raise BagError(
             f"{table.path}: expected a number in every field, got {counted(table.incomplete, 'row')} with "
             "an empty one; fill it in, or leave out the row"
         )
+    check_increasing(f"{table.path}", motion.time)
     kinds, numbers = (VELOCITY, ACCELERATION), dict(motion.numbers)
     if not numbers.keys() >= {*kinds}:  # positions of points far apart don't determine the motion
         wanted = "seconds in steps below 0.5, or columns of velocity and acceleration"
         check_seconds(f"{table.path}", motion.time, wanted)
     notes = add_derivatives(motion.time, numbers, kinds)
-    states = [numbers[kind] for kind in (POSITION, *kinds)]
-    if _much_faster_than_it_moves(motion.time, *states[:2]):
-        check_seconds(f"{table.path}", motion.time)
-    return (motion.time, states), notes
+    planned = Plan(
+        f"{table.path}",
+        "row",
+        numbers[POSITION],
+        motion.time,
+        *(motion.numbers.get(kind) for kind in kinds),
+    )
+    return (motion.time, [numbers[kind] for kind in (POSITION, *kinds)], planned), notes
 
 
-def _much_faster_than_it_moves(time: Floats, q: Floats, qd: Floats) -> bool:
-    """Whether velocities and time make a far longer way than positions go.
-
-    Points of a plan may be seconds apart, so the time alone doesn't tell its unit.
-    """
-    way = np.abs(np.diff(q, axis=0)).sum()
-    mean_velocity = np.abs(qd[1:] + qd[:-1]) / 2
-    driven = (mean_velocity * np.abs(np.diff(time))[:, None]).sum()
-    return bool(driven > _FAR_LONGER * way)
-
-
-def _states_of_message(
-    trajectory: JointTrajectory, joints: Sequence[str]
-) -> tuple[Floats, list[Floats]]:
+def _states_of_message(trajectory: JointTrajectory, joints: Sequence[str]) -> States:
     if others := [name for name in trajectory.joint_names if name not in joints]:
         raise BagError(
             f"{trajectory.where}: expected the joints {', '.join(joints)}, got also "
@@ -212,4 +232,12 @@ def _states_of_message(
         trajectory.numbers(field, joints, _WHY)
         for field in ("positions", "velocities", "accelerations")
     ]
-    return trajectory.time_from_start.astype(np.float64) * 1e-9, state
+    time = trajectory.time_from_start.astype(np.float64) * 1e-9
+    check_increasing(trajectory.where, time, "point")
+    if len(time) and time[0] < 0:
+        raise BagError(
+            f"{trajectory.where}, point 1: time_from_start: expected 0 s or more, got {time[0]:g}; "
+            "count from the start of the trajectory"
+        )
+    q, qd, qdd = state
+    return time, state, Plan(trajectory.where, "point", q, time, qd, qdd)

@@ -28,9 +28,10 @@ examples:
   ids torques planned --robot panda_real --no-friction --out filled
       for a robot whose controller compensates friction itself
 
-Each point needs positions, velocities and accelerations. An output directory also holds torques.json:
-how efforts were computed, energy and peak power, and the peak of each joint. The printed table shows which
-joints would exceed the effort limits of the robot description, and when first.
+Each point needs positions, velocities and accelerations, and a later time than the one before. Notes name what
+contradicts itself, such as zero velocities in a motion, degrees and jumps, and limits that are passed. An output
+directory also holds torques.json: how efforts were computed, energy and peak power, and the peak of each joint. The
+printed table shows which joints would exceed the effort limits of the robot description, and when first.
 """
 
 
@@ -68,5 +69,4 @@ def run(arguments: argparse.Namespace) -> None:
         left_out = write_trajectory_torques(result, out, overwrite=overwrite, progress=progress)
     missing = description_notes(robot, "effort limits") if arguments.urdf else ()
     result = replace(result, notes=(*result.notes, *left_out, *missing))
-    numbers = {**result.numbers(), "notes": result.notes}
-    show(arguments, numbers, [out], [*result.lines(), ("written", out)])
+    show(arguments, result.numbers(), [out], [*result.lines(), ("written", out)])

@@ -13,6 +13,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+from inverse_dynamics.evaluation.posture import locked_joints
 from inverse_dynamics.identification.result import identified_model, urdf_of
 from inverse_dynamics.robots.robot_files import robot_text
 from inverse_dynamics.robots.robots import RIGID_BODY
@@ -72,13 +73,15 @@ def model_file_text(found: Identification, name: str) -> str:
             found.joints, found.held_out["identified"], found.units, strict=True
         )
     )
+    at = [f"{joint} at {q:.4g}" for joint, q in locked_joints(found.robot).items()]
+    posture = f"Joints that it lacks are held: {listed(at)}. " if at else ""
     return identified_model(found).file_text(
         name=name,
         source=f"`ids identify` on {counted(len(found.recordings), 'recording')} ({names}): {found.samples} samples, "
         f"{found.duration:.1f} s; prior and geometry: {urdf_of(found).name}; friction law "
         f"{found.law}, prior strength {found.prior_strength:g}, torque delay {1e3 * found.delay:.1f} "
         f"ms; {found.filter}; efforts: {found.effort}",
-        validity="All links are physically consistent, so H is positive definite. Root mean square error on "
+        validity=f"All links are physically consistent, so H is positive definite. {posture}Root mean square error on "
         f"data that were held out: {errors}. Within the ranges stated as `seen`, of the robot, load and "
         "temperature of the recordings: friction and offset differ on another day. Masses of single "
         "links are mostly those of the description: torques don't determine them.",

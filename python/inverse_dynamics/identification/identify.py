@@ -4,16 +4,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
+from itertools import compress, pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from inverse_dynamics import _core
 from inverse_dynamics.arguments import checked
 from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run, torques_with_gravity
-from inverse_dynamics.evaluation.posture import locked_joints, posture_of
+from inverse_dynamics.evaluation.posture import LOCKED, locked_joints, posture_of, still_joints
 from inverse_dynamics.evaluation.ranges import on_one_turn
 from inverse_dynamics.evaluation.run import RunOptions, of_recording, overridden
 from inverse_dynamics.identification.baselines import baseline_torques, baselines
@@ -66,7 +66,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from inverse_dynamics._core import ArmFitter, DescribedJoint, FastModel, Solver
-    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.arrays import Floats, Parameter
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.identification.drive_gains import KnownPayload
     from inverse_dynamics.identification.result import DriveGain, Level
@@ -93,6 +93,8 @@ def identify(
     **options: Unpack[RunOptions],
 ) -> Identification:
     """Identify a physically consistent model with friction from recordings of a moving arm.
+
+    Joints of the chain that stand still are held: the model is that of the others, in this posture.
 
     Parameters
     ----------
@@ -139,7 +141,11 @@ def identify(
     description = _description(robot)
     _check_given(recordings, known_payloads)
     described = _core.FastModel.from_urdf(
-        description, root=robot.root, tip=robot.tip, gravity=robot.gravity
+        description,
+        root=robot.root,
+        tip=robot.tip,
+        gravity=robot.gravity,
+        locked_joints=locked_joints(robot),
     )
     joints = described.joint_names
     motors, unfitted = coupling_of(coupling, robot.gears, len(joints))
@@ -166,6 +172,13 @@ def identify(
     evaluations = on_one_turn(
         [evaluate_run(open_run(path, robot, progress=progress, **stated)) for path in recordings]
     )
+    still = still_joints(evaluations)
+    some = 0 < len(still.parameters) < len(joints)
+    if some and not (len(coupling) or robot.gears):  # which are of all joints
+        others: dict[str, Any] = {"known_payloads": known_payloads, "accept": accept}
+        moving = _without(robot, joints, still.parameters)
+        found = identify(recordings, moving, blocks=blocks, progress=progress, **others, **stated)
+        return replace(found, notes=(*still.notes, *found.notes))
     check_recordings(evaluations, accept)
     robot = evaluations[0].robot
     _check_gravity(evaluations)
@@ -182,6 +195,22 @@ def identify(
     found = replace(found, drive_gains=gains, notes=notes)
     check_result(found, accept)
     return found
+
+
+def _without(robot: Robot, joints: Sequence[str], held: Mapping[str, Parameter]) -> Robot:
+    """The robot's description with joints of the chain held, and what is stated of each of the others."""
+    moves = [f"{LOCKED}{joint}" not in held for joint in joints]
+    load = {name: at for name, at in robot.parameters.items() if name.startswith("payload.")}
+    parameters = robot.parameters if robot.plugin == RIGID_BODY and not robot.model else load
+    return replace(
+        robot,
+        plugin=RIGID_BODY,
+        model=None,
+        parameters={**parameters, **held},
+        joints=tuple(compress(robot.joints, moves)),
+        drive_gains=tuple(compress(robot.drive_gains, moves)),
+        sign=tuple(compress(robot.sign, moves)),
+    )
 
 
 def _description(robot: Robot) -> str:

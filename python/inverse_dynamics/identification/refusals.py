@@ -96,8 +96,7 @@ def _check_motion(evaluations: Sequence[Evaluation]) -> None:
             "method is worse than the model that it starts from; record half a minute in which every "
             "joint turns round several times (`ids excite` makes such a motion)"
         )
-    low = np.min([e.log.q.min(axis=0) for e in evaluations], axis=0)
-    travel = np.max([e.log.q.max(axis=0) for e in evaluations], axis=0) - low
+    travel = np.max([np.ptp(e.log.q, axis=0) for e in evaluations], axis=0)
     names, units = evaluations[0].joint_names, evaluations[0].units
     still = {
         joint: f"{way:.2g} {'m' if unit == 'N' else 'rad'}"
@@ -109,7 +108,7 @@ def _check_motion(evaluations: Sequence[Evaluation]) -> None:
             f"{where}: {listed(list(still))}: expected every joint to move by {LEAST_TRAVEL:g} rad (prismatic: "
             f"{LEAST_TRAVEL:g} m) or more, got {listed(list(still.values()))}, "
             "so that neither friction nor load of the joint show; record a motion in which it moves "
-            "(`ids excite` makes one), or end the chain before it: `root` and `tip` of a run configuration"
+            "(`ids excite` makes one); one that stands still at the same place in all recordings is held"
         )
 
 

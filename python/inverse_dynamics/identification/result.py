@@ -20,6 +20,7 @@ import numpy as np
 
 from inverse_dynamics._core import FastModel, Solver
 from inverse_dynamics.errors import EvaluationError, RobotError
+from inverse_dynamics.evaluation.posture import locked_joints
 from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY
@@ -287,7 +288,11 @@ def identified_model(found: Identification) -> FastModel:
     """The description's chain with the identified links, rotors and friction. Raises RobotError."""
     robot = found.robot
     described = FastModel.from_urdf(
-        read_description(urdf_of(found)), root=robot.root, tip=robot.tip, gravity=robot.gravity
+        read_description(urdf_of(found)),
+        root=robot.root,
+        tip=robot.tip,
+        gravity=robot.gravity,
+        locked_joints=locked_joints(robot),
     )
     return described.identified(found.model)
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.arrays import Floats, Integers
 
-_LONGEST_PERIOD = 0.5  # s: no recording of a motion is as slow
+LONGEST_PERIOD = 0.5  # s: no recording of a motion is as slow
 _BETWEEN_RUNS, _PERIODS_BETWEEN_RUNS = 1.0, 50.0  # s; what the time base takes for a gap
 _UNITS_OF_STEPS = ((5e5, "ns"), (5e2, "us"), (0.0, "ms"))
 _EPOCH = (1e9, 2.0**31)  # s since 1970: from 2001 to 2038
@@ -122,11 +122,11 @@ def _period(time: Floats) -> tuple[float, str]:
 def sure_unit(time: Floats, numbers: Mapping[str, Floats]) -> tuple[str, str]:
     """The unit of (N,) a time that isn't in seconds, and how it shows; "": it may be, or doesn't show."""
     period, latest = _period(time)[0], np.abs(time).max()
-    if period < _LONGEST_PERIOD:
+    if period < LONGEST_PERIOD:
         return "", ""
     units = [unit for _, unit in _UNITS_OF_STEPS if latest * UNITS[unit] < _EPOCH[1]]
     for unit in units:
-        if latest * UNITS[unit] >= _EPOCH[0] and period * UNITS[unit] < _LONGEST_PERIOD:
+        if latest * UNITS[unit] >= _EPOCH[0] and period * UNITS[unit] < LONGEST_PERIOD:
             return unit, "its numbers are then dates of this century"
     if VELOCITY in numbers:
         way = np.diff(numbers[POSITION], axis=0)
@@ -135,7 +135,7 @@ def sure_unit(time: Floats, numbers: Mapping[str, Floats]) -> tuple[str, str]:
         agree = (way * driven).sum() > _AGREEMENT * lengths[0] * lengths[1]
         for unit in units:
             if agree and 0.5 < lengths[0] / (lengths[1] * UNITS[unit]) < 2.0:
-                slow = period * UNITS[unit] >= _LONGEST_PERIOD
+                slow = period * UNITS[unit] >= LONGEST_PERIOD
                 return ("", "") if slow else (unit, "velocities then agree with positions")
     if units and period >= _UNITS_OF_STEPS[0][0]:
         return "ns", f"steps of {period:g} are too long for other units"
@@ -145,7 +145,7 @@ def sure_unit(time: Floats, numbers: Mapping[str, Floats]) -> tuple[str, str]:
 def check_seconds(where: str, time: Floats, expected: str = "seconds") -> None:
     """Raise BagError if (N,) the time of a motion can't be in seconds."""
     period, unit = _period(time)
-    if period >= _LONGEST_PERIOD:
+    if period >= LONGEST_PERIOD:
         raise BagError(
             f"{where}: {TIME}: expected {expected}, got steps of {period:g}: are they {unit}? Then state "
             f"--scale {TIME}={unit}"
@@ -154,6 +154,18 @@ def check_seconds(where: str, time: Floats, expected: str = "seconds") -> None:
         raise BagError(
             f"{where}: {TIME}: expected seconds, got {np.abs(time).max():g}; count from the start of "
             "the recording, or state their unit with --scale"
+        )
+
+
+def check_increasing(where: str, time: Floats, point: str = "row") -> None:
+    """Raise BagError unless each of (N,) times of a plan is later than the one before, as controllers demand."""
+    back = np.flatnonzero(~(np.diff(time) > 0)) + 1
+    if len(back):
+        k = int(back[0])
+        more = f", the first of {counted(len(back), 'such place')}" if len(back) > 1 else ""
+        raise BagError(
+            f"{where}: {TIME}: expected times that increase, got {time[k]:.12g} s in {point} {k + 1} after "
+            f"{time[k - 1]:.12g} s{more}; sort or correct them, or time the path: `ids retime`"
         )
 
 

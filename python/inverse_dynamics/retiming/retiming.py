@@ -24,13 +24,16 @@ from inverse_dynamics._core import (
     torque_band,
 )
 from inverse_dynamics.arguments import checked
+from inverse_dynamics.diagnosis.plans import Plan, contradictions
 from inverse_dynamics.errors import BagError, UserError
+from inverse_dynamics.recordings.columns import stated_columns
 from inverse_dynamics.recordings.csv_table import is_csv
 from inverse_dynamics.recordings.joint_trajectories import of_one_motion, read_joint_trajectories
 from inverse_dynamics.recordings.log_format import LogFormat
 from inverse_dynamics.recordings.table_logs import read_motion
 from inverse_dynamics.recordings.tables import open_table
-from inverse_dynamics.recordings.vocabulary import POSITION
+from inverse_dynamics.recordings.times import check_increasing, time_columns
+from inverse_dynamics.recordings.vocabulary import ACCELERATION, POSITION, TIME, VELOCITY
 from inverse_dynamics.retiming.figure import retime_figure
 from inverse_dynamics.retiming.files import FILES, write_trajectory
 from inverse_dynamics.retiming.page import retime_page
@@ -168,12 +171,13 @@ def retime(
     ----------
     path
         Waypoints (m, n) [rad]; a file of them: trajectory_msgs/JointTrajectory of a recording, a table, or a
-        YAML file with `joints` and `positions`, times ignored; or a JointPath. A continuous joint turns as
+        YAML file with `joints` and `positions`; or a JointPath. Times that a file has must increase, and tell
+        nothing but mistakes, as velocities do; all may be zero. A continuous joint turns as
         far as the numbers say; in a table recorded within one turn, wrap-around is undone.
     robot
         As evaluate() takes it.
     limits
-        Torques and velocities that aren't among them are those of the robot description.
+        Those that aren't among them are those of the robot description.
     weight
         s/J. Above 0 the motion is slower and minimises about duration + weight * energy.
     rate
@@ -202,8 +206,14 @@ def retime(
         raise UserError(f"weight: expected a finite number, s/J, at least zero, got {weight:g}")
     arm = Arm(robot)
     options = options or RetimeOptions()
-    limits = described_limits(arm, limits)
+    stated, limits = limits, described_limits(arm, limits)
     notes = [*filter(None, [arm.guess]), *arm.solver.warnings, *_notes_of_velocities(arm, limits)]
+    if options.start_speed + options.end_speed > 0.0 and not (stated and len(stated.jerk)):
+        if len(limits.jerk):
+            notes.append(
+                "jerk isn't limited, as the description says, where a motion begins or ends at speed"
+            )
+        limits = _changed(limits, jerk=np.zeros(0))
     if not isinstance(path, JointPath):
         path, seams = _joint_path(path, arm, **shape)
         notes += seams
@@ -253,7 +263,7 @@ def sample_times(duration: float, rate: float) -> Floats:
 
 
 def described_limits(arm: Arm, given: MotionLimits | None = None) -> MotionLimits:
-    """Limits with those of torque and velocity that aren't given from the robot description.
+    """Limits with those that aren't given from the robot description.
 
     One number stands for all joints. Raises UserError where a joint has no torque limit.
     """
@@ -271,6 +281,10 @@ def described_limits(arm: Arm, given: MotionLimits | None = None) -> MotionLimit
     for name, limit in (("torque", "effort"), ("velocity", "velocity")):
         if not len(found[name]):
             found[name] = np.minimum(arm.limit(limit, np.inf), _UNLIMITED)
+    acceleration = np.minimum(arm.limit("acceleration", np.inf), arm.limit("deceleration", np.inf))
+    for name, limit in (("acceleration", acceleration), ("jerk", arm.limit("jerk", np.inf))):
+        if not len(found[name]) and np.isfinite(limit).any():
+            found[name] = np.minimum(limit, _UNLIMITED)
     lacking = [j for j, torque in zip(joints, found["torque"], strict=True) if torque == _UNLIMITED]
     if lacking:
         raise UserError(
@@ -306,18 +320,21 @@ def _joint_path(
     source: Path | str | ArrayLike, arm: Arm, **shape: Unpack[PathShape]
 ) -> tuple[JointPath, list[str]]:
     """The path, and notes."""
-    waypoints = waypoints_of(source, arm, shape.get("topic", ""))
+    plan = waypoints_of(source, arm, shape.get("topic", ""))
     notes: list[str] = []
     if isinstance(source, Path | str) and is_csv(Path(source)):
-        waypoints, notes = _unwrapped(waypoints, arm)
+        waypoints, notes = _unwrapped(plan.q, arm)
+        plan = replace(plan, q=waypoints)
+    waypoints, found = plan.q, contradictions(plan, arm)
+    notes += [text for kind, text in found.items() if kind not in ("rest", "acceleration")]
     stops, deviation = list(shape.get("stops", ())), shape.get("deviation")
     if deviation is None:
         return JointPath.spline(waypoints, stops), notes
     return JointPath.lines(waypoints, deviation, stops), notes
 
 
-def waypoints_of(path: Path | str | ArrayLike, arm: Arm, topic: str) -> Floats:
-    """(m, n) rad, in the order of the chain. Raises UserError."""
+def waypoints_of(path: Path | str | ArrayLike, arm: Arm, topic: str) -> Plan:
+    """Waypoints, and what else a file has of the motion. Raises UserError."""
     if not isinstance(path, Path | str):
         waypoints = np.asarray(path, dtype=np.float64)
         if waypoints.ndim != 2 or waypoints.shape[1] != len(arm.joint_names):
@@ -325,32 +342,47 @@ def waypoints_of(path: Path | str | ArrayLike, arm: Arm, topic: str) -> Floats:
                 f"path: expected waypoints (m, {len(arm.joint_names)}), one per row, got an array "
                 f"{waypoints.shape}"
             )
-        return waypoints
+        return Plan("path", "waypoint", waypoints)
     path = Path(path)
     found = _waypoints_of_file(path, arm, topic)
-    if len(found) < 2:
-        raise BagError(f"{path}: expected two waypoints at least, got {len(found)}")
+    if len(found.q) < 2:
+        raise BagError(f"{path}: expected two waypoints at least, got {len(found.q)}")
+    if found.time is None or not np.ptp(found.time):  # a path that nobody has timed yet
+        return replace(found, time=None)
+    check_increasing(found.where, found.time, found.point)
     return found
 
 
-def _waypoints_of_file(path: Path, arm: Arm, topic: str) -> Floats:
+def _waypoints_of_file(path: Path, arm: Arm, topic: str) -> Plan:
     if path.suffix in (".yaml", ".yml"):
         return _waypoints_of_yaml(path, arm.joint_names)
     if is_csv(path):
-        form = replace(LogFormat.of(arm.robot), rate=1.0)  # without a column of time: it is ignored
-        table = open_table(path, topic=topic)
+        table, form = open_table(path, topic=topic), LogFormat.of(arm.robot)
+        stated = [kind for kind, _ in stated_columns(form.columns, f"{path}")]
+        timed = TIME in stated or bool(time_columns(table.names))
+        form = form if timed else replace(form, rate=1.0)
         motion = read_motion(table, arm.recorded_names, form, (POSITION,))
         if table.incomplete:
             raise BagError(
                 f"{path}: expected a number for each joint in each row, got {table.incomplete} of "
                 f"{table.incomplete + len(motion.time)} rows without; complete or remove them"
             )
-        return motion.numbers[POSITION]
+        q, qd, qdd = (motion.numbers.get(kind) for kind in (POSITION, VELOCITY, ACCELERATION))
+        assert q is not None
+        return Plan(f"{path}", "row", q, motion.time if timed else None, qd, qdd)
     trajectories = of_one_motion(read_joint_trajectories(path, topic), "record the path alone")
-    return np.concatenate([t.numbers("positions", arm.recorded_names) for t in trajectories])
+    points = [point for trajectory in trajectories for point in trajectory.message.points]
+
+    def joined(field: str) -> Floats:
+        return np.concatenate([t.numbers(field, arm.recorded_names) for t in trajectories])
+
+    time = np.concatenate([t.stamp + t.time_from_start for t in trajectories])
+    velocities = joined("velocities") if all(len(point.velocities) for point in points) else None
+    since_start = (time - time[0]) * 1e-9
+    return Plan(trajectories[0].where, "point", joined("positions"), since_start, velocities)
 
 
-def _waypoints_of_yaml(path: Path, joints: Sequence[str]) -> Floats:
+def _waypoints_of_yaml(path: Path, joints: Sequence[str]) -> Plan:
     top = read_mapping(path, BagError)
     names = [entry.text() for entry in top.required("joints").entries()]
     if sorted(names) != sorted(joints):
@@ -360,11 +392,16 @@ def _waypoints_of_yaml(path: Path, joints: Sequence[str]) -> Floats:
     positions = top.required("positions")
     if (kind := top.optional("kind")) is not None:
         kind.text(("waypoints",))
-    for ignored in ("schema", "times", "source", "rests"):
+    for ignored in ("schema", "source", "rests"):
         top.optional(ignored)
+    times = top.optional("times")
     top.reject_others()
     rows = [[x.number() for x in row.entries(len(names))] for row in positions.entries()]
-    return np.array(rows).reshape(-1, len(names))[:, [names.index(joint) for joint in joints]]
+    q = np.array(rows).reshape(-1, len(names))[:, [names.index(joint) for joint in joints]]
+    if times is None or not rows:
+        return Plan(f"{path}", "waypoint", q)
+    time = np.array([x.number() for x in times.entries(len(rows))])
+    return Plan(f"{path}", "waypoint", q, time)
 
 
 def _unwrapped(waypoints: Floats, arm: Arm) -> tuple[Floats, list[str]]:

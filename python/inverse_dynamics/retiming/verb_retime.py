@@ -20,7 +20,7 @@ EPILOG = """\
 examples:
   ids retime waypoints.yaml --robot ur10_real --out fast
       a YAML file of waypoints (docs/retime.md), a table with columns position.JOINT, or a
-      recording of trajectory_msgs/JointTrajectory; times are ignored
+      recording of trajectory_msgs/JointTrajectory; times must increase, or all be zero
 
   ids retime picks.csv --robot ur10_real --deviation 0.05 --payload 3 --out fast
       straight lines that pass the waypoints by at most 0.05 rad, with 3 kg at the tip
@@ -30,7 +30,7 @@ examples:
 
 The output directory is a recording of the trajectory with efforts; beside it a table, numbers, a
 figure, and report.html: the robot moving beside itself under one acceleration limit. Limits of
-torque and velocity are those of the robot description unless they are given.
+torque, velocity, acceleration and jerk are those of the robot description unless they are given.
 """
 
 
@@ -61,8 +61,8 @@ def declare(options: Options) -> None:
     limits = options.group("limits, one for all joints or one for each")
     limits.add("--torque A,B,...", "N m (default: of the robot description)", numbers)
     limits.add("--velocity A,B,...", "rad/s (default: of the robot description)", numbers)
-    limits.add("--acceleration A,B,...", "rad/s^2", numbers)
-    limits.add("--jerk A,B,...", "rad/s^3", numbers)
+    limits.add("--acceleration A,B,...", "rad/s^2 (default: of a URDF 1.2)", numbers)
+    limits.add("--jerk A,B,...", "rad/s^3 (default: of a URDF 1.2)", numbers)
     limits.add("--knee-velocity A,B,...", "rad/s, above it torque limits fall in a line", numbers)
     limits.add("--no-load-velocity A,B,...", "rad/s, there they are zero", numbers)
     limits.add("--tip-speed M/S", "speed of the tip, m/s", positive_number)

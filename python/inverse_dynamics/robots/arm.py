@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
 
 
+_LIMITS = ("lower", "upper", "velocity", "effort", "acceleration", "deceleration", "jerk")
+
+
 class Arm:
     """The arm of a run configuration, before a recording is read. Raises UserError."""
 
@@ -48,7 +51,10 @@ class Arm:
         self.robot = robot
 
     def limit(self, name: str, absent: float) -> Floats:
-        """(n,) of `lower`, `upper`, `velocity` or `effort`: the description's, or without one the model's."""
+        """(n,) of `lower`, `upper`, `velocity`, `effort`, `acceleration`, `deceleration` or `jerk`.
+
+        The description's, or without one the model's; absent: of joints that have none.
+        """
         robot = self.robot
         limits: Sequence[Mapping[str, float]] = [{}] * len(self.joint_names)
         if self.description:
@@ -84,9 +90,8 @@ def _model_limits(file: Path) -> list[dict[str, float]]:
     """Stated limits of the joints of a model file, which a solver has read."""
     joints = read_mapping(file, RobotError).required("joints").entries()
     stated = [joint.mapping().optional("limits") for joint in joints]
-    names = ("lower", "upper", "velocity", "effort")
     return [
-        {name: one.number() for name in names if (one := limits.mapping().optional(name))}
+        {name: one.number() for name in _LIMITS if (one := limits.mapping().optional(name))}
         if limits
         else {}
         for limits in stated

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import subprocess
 import sys
@@ -55,7 +56,7 @@ def read_description(file: Path) -> str:
 
 
 def parse_description(text: str, where: object = "robot description") -> Element:
-    """The element <robot> of a URDF. Raises RobotError for what isn't one."""
+    """The element <robot> of a URDF, its quaternions as angles. Raises RobotError for what isn't one."""
     import xml.etree.ElementTree as ElementTree
 
     class Builder(ElementTree.TreeBuilder):
@@ -79,7 +80,34 @@ def parse_description(text: str, where: object = "robot description") -> Element
         level = [element for parent in level for element in parent]
     if level:
         raise RobotError(f"{where}: expected at most {_MOST_LEVELS} levels of elements, got more")
+    for origin in robot.iter("origin"):
+        quaternion = origin.attrib.pop("quat_xyzw", "")
+        if quaternion and robot.get("version") in (
+            "1.1",
+            "1.2",
+        ):  # others ignore it, as urdfdom does
+            origin.set("rpy", _angles(quaternion, where))
     return robot
+
+
+def _angles(quaternion: str, where: object) -> str:
+    """Roll, pitch, yaw of `x y z w`."""
+    try:
+        x, y, z, w = map(float, quaternion.split())
+        length = math.hypot(x, y, z, w)
+        x, y, z, w = x / length, y / length, z / length, w / length
+    except (ValueError, ZeroDivisionError):
+        raise RobotError(
+            f"{where}: <origin quat_xyzw=...>: expected a rotation, four numbers, got {shown(quaternion)}"
+        ) from None
+    yaw = math.atan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z))
+    c, s = math.cos(yaw), math.sin(yaw)
+    pitch = math.atan2(2 * (w * y - x * z), c * (1 - 2 * (y * y + z * z)) + s * 2 * (x * y + w * z))
+    roll = math.atan2(
+        s * 2 * (x * z + w * y) - c * 2 * (y * z - w * x),
+        c * (1 - 2 * (x * x + z * z)) - s * 2 * (x * y - w * z),
+    )
+    return f"{roll!r} {pitch!r} {yaw!r}"
 
 
 def _expanded(file: Path, arguments: Sequence[str]) -> str:

@@ -53,6 +53,7 @@ def robot_text(robot: Robot, file: Path) -> str:
         _key("friction", True, str(robot.friction).lower(), "whether the solver's friction counts"),
         _key("effort", True, robot.effort, "torque, current, torque_without_gravity, or auto: found from the data"),
         _key("drive_gains", robot.drive_gains, yaml_list(gains), "N m/A of each joint, where efforts are currents"),
+        *_held(robot),
         *_table(robot),
         "accelerations:",
         f"  method: {robot.accelerations}",
@@ -82,6 +83,13 @@ def reference(path: Path, directory: Path) -> str:
             if share.parent.name == "share" and package_share(share.name).resolve() == share:
                 return f"package://{place.relative_to(share.parent)}"
     return os.path.relpath(place, directory.resolve())
+
+
+def _held(robot: Robot) -> list[str]:
+    """Parameters that hold joints, which a model may lack."""
+    held = {key: at for key, at in robot.parameters.items() if key.startswith("locked_joints.")}
+    rows = [f"  {yaml_text(key)}: {yaml_number(float(at))}  # rad, m" for key, at in held.items()]
+    return ["parameters:", *rows] if rows else []
 
 
 def _table(robot: Robot) -> list[str]:

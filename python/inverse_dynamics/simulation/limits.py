@@ -37,18 +37,19 @@ class MotionLimits:
     velocity: Floats  # rad/s
     acceleration: Floats  # rad/s^2
     effort: Floats  # N m
+    jerk: Floats  # rad/s^3
 
     @classmethod
     def of(cls, robot: SimulatedRobot, time_to_full_speed: float = 0.0) -> MotionLimits:
-        """The URDF's limits. It states none for accelerations: they are what the effort limits leave.
+        """The URDF's limits. Where it states none of accelerations, they are what the effort limits leave.
 
         time_to_full_speed: s; above zero, accelerations are limited to what reaches the velocity limit in this time.
         """
         chain = robot.chain
-        acceleration = np.full_like(chain.velocity, np.inf)
+        acceleration = chain.acceleration
         if time_to_full_speed > 0:
-            acceleration = chain.velocity / time_to_full_speed
-        return cls(chain.lower, chain.upper, chain.velocity, acceleration, chain.effort)
+            acceleration = np.minimum(acceleration, chain.velocity / time_to_full_speed)
+        return cls(chain.lower, chain.upper, chain.velocity, acceleration, chain.effort, chain.jerk)
 
     def window(self) -> tuple[Floats, Floats]:
         """Lowest and highest positions (n,) of a motion: at most one turn."""
@@ -64,6 +65,7 @@ class MotionLimits:
             fraction * self.velocity,
             fraction * self.acceleration,
             fraction * self.effort,
+            fraction * self.jerk,
         )
 
 
@@ -104,6 +106,7 @@ def check_trajectory(
         ("position", "rad", q, limits.lower, limits.upper),
         ("velocity", "rad/s", qd, -limits.velocity, limits.velocity),
         ("acceleration", "rad/s^2", qdd, -limits.acceleration, limits.acceleration),
+        ("jerk", "rad/s^3", np.gradient(qdd, time, axis=0), -limits.jerk, limits.jerk),
         ("effort", "N m", tau, -limits.effort, limits.effort),
     ):
         rounding = _ROUNDING * (1.0 + np.abs(values))

@@ -41,6 +41,8 @@ class UrdfChain:
     upper: Floats  # (n,)
     velocity: Floats  # (n,) rad/s (prismatic m/s)
     effort: Floats  # (n,) N m (prismatic N)
+    acceleration: Floats  # (n,) rad/s^2 (prismatic m/s^2), of speeding up and slowing down
+    jerk: Floats  # (n,) rad/s^3 (prismatic m/s^3)
     damping: Floats  # (n,) N m s/rad, stated in <dynamics>
     friction: Floats  # (n,) N m, stated in <dynamics>
     urdf: str  # joints beside the chain are locked, meshes are left out
@@ -75,6 +77,8 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
         upper=limits("upper", np.inf),
         velocity=limits("velocity", np.inf),
         effort=limits("effort", np.inf),
+        acceleration=np.minimum(limits("acceleration", np.inf), limits("deceleration", np.inf)),
+        jerk=limits("jerk", np.inf),
         damping=np.array([joint.damping for joint in joints]),
         friction=np.array([joint.friction for joint in joints]),
         notes=_prepare_for_mujoco(robot, names),

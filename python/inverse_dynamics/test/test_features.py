@@ -26,9 +26,11 @@ ALLOWED = {
     ("demo", "simulation"): "recordings of the simulated robots",
     ("evaluation", "diagnosis"): "meaning of efforts, and causes of errors",
     ("excitation", "simulation"): "the robot whose motion is chosen",
+    ("feedforward", "diagnosis"): "plans that contradict themselves",
     ("identification", "diagnosis"): "recordings that no model is identified from",
     ("identification", "payload"): "the former name of payload.payload",
     ("results", "identification"): "the former name of identification.files",
+    ("retiming", "diagnosis"): "paths that contradict themselves",
     ("robots", "simulation"): "the verb checks `simulation:` of a run configuration",
     ("simulation", "excitation"): "`ids simulate --optimise`",
 }

@@ -27,7 +27,9 @@ ReferenceInput referenceInput(const Setup& setup, const ReferenceLayout& layout,
   const ReferenceLimits limits{
       jointNumbers("limits.position_lower", own.position_lower, joints, urdf.lower),
       jointNumbers("limits.position_upper", own.position_upper, joints, urdf.upper),
-      jointNumbers("limits.velocity", own.velocity, joints, urdf.velocity)};
+      jointNumbers("limits.velocity", own.velocity, joints, urdf.velocity),
+      jointNumbers("limits.acceleration", own.acceleration, joints, urdf.acceleration),
+      jointNumbers("limits.acceleration", own.acceleration, joints, urdf.deceleration)};
   const ReferenceGuard guard(limits,
                              jointNumbers("stop_deceleration", params.stop_deceleration, joints),
                              joints, setup.arm.solver->jointTypes());

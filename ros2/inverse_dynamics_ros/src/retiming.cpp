@@ -42,7 +42,6 @@ Retiming::Retiming(const NodeRobot& robot, const std::string& description,
 void Retiming::describeLimits(const std::string& description) {
   const auto described =
       inverse_dynamics_control::describedLimits(description, solver_->jointNames());
-  lower_ = described.reference.lower, upper_ = described.reference.upper;
   const auto chosen = [this](const std::string& name, const std::vector<double>& given,
                              const chain_dynamics::OwnedVector& otherwise) {
     return inverse_dynamics_control::jointNumbers("limits." + name, given, joints_, otherwise);
@@ -53,10 +52,16 @@ void Retiming::describeLimits(const std::string& description) {
                     "limits of torque [N m], here or in the robot description",
                     "neither for all joints", "set it");
   }
-  limits_.velocity =
-      chosen("velocity", params_.limits.velocity, described.reference.velocity).cwiseMin(1e6);
-  limits_.acceleration = chosen("acceleration", params_.limits.acceleration, {});
-  limits_.jerk = chosen("jerk", params_.limits.jerk, {});
+  const auto stated = [](const Eigen::VectorXd& limit) -> chain_dynamics::OwnedVector {
+    if (!limit.array().isFinite().any()) return {};
+    return limit.cwiseMin(1e6);
+  };
+  const auto& [lower, upper, velocity, acceleration, deceleration] = described.reference;
+  lower_ = lower, upper_ = upper;
+  limits_.velocity = chosen("velocity", params_.limits.velocity, velocity).cwiseMin(1e6);
+  limits_.acceleration = chosen("acceleration", params_.limits.acceleration,
+                                stated(acceleration.cwiseMin(deceleration)));
+  limits_.jerk = chosen("jerk", params_.limits.jerk, stated(described.jerk));
 }
 
 void Retiming::carry(const inverse_dynamics_control::RigidBody& body) {

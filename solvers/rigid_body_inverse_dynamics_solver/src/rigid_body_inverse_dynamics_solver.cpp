@@ -62,11 +62,13 @@ Chain chainOfDescription(const Configuration& configuration) {
 /// Warnings of parameters that have a meaning for robot descriptions only.
 Sentences unusedParameters(const Configuration& configuration) {
   std::vector<std::string> names = {"allow_massless", "urdf_friction", "rotor_inertia"};
-  if (configuration.robot_description.empty()) {
-    names.insert(names.end(), {"root", "tip", "attached"});  // else: differences()
+  std::vector<const char*> prefixes = {"rotor_inertia."};
+  if (configuration.robot_description.empty()) {  // else: differences()
+    names.insert(names.end(), {"root", "tip", "attached"});
+    prefixes.push_back("locked_joints.");
   }
   for (const std::string& name : configuration.parameters.names()) {
-    for (const char* const of_joints : {"locked_joints.", "rotor_inertia."}) {
+    for (const char* const of_joints : prefixes) {
       if (name.rfind(configuration.fullName(of_joints), 0) != 0) continue;
       names.push_back(name.substr(configuration.fullName("").size()));
     }
@@ -95,6 +97,10 @@ Sentences attachedLinks(const Configuration& configuration, const chain_dynamics
     if (joint == robot.kNone)
       throw Exception("robot " + robot.name + " has no joint '" + name + "'");
     links_of_model.insert(robot.joints[joint].child);
+  }
+
+  for (const auto& joint : robot.joints) {  // held where the model was identified with it
+    if (configuration.locked_position(joint.name)) links_of_model.insert(joint.child);
   }
 
   std::string bodies;

@@ -62,6 +62,10 @@ struct JointLimits {
   double upper = std::numeric_limits<double>::infinity();     ///< rad; m
   double velocity = std::numeric_limits<double>::infinity();  ///< rad/s; m/s
   double effort = std::numeric_limits<double>::infinity();    ///< N m; N
+  /// Of speeding up and of slowing down; rad/s^2; m/s^2.
+  double acceleration = std::numeric_limits<double>::infinity();
+  double deceleration = std::numeric_limits<double>::infinity();
+  double jerk = std::numeric_limits<double>::infinity();  ///< rad/s^3; m/s^3
 };
 
 /// One movable joint, and where it sits on its parent link.

@@ -11,8 +11,10 @@
 /// what isn't understood is a warning. What URDF allows to be left out has URDF's meaning: no
 /// `<origin>` is the identity, no `<axis>` is x, no `<inertial>` is no mass.
 ///
-/// Read are the links and joints of URDF 1.0 to 1.2 [https://wiki.ros.org/urdf/XML], with
-/// `quat_xyzw` of 1.2, and the rotor inertia of `<transmission>`. Known, and left to others: visual
+/// Read are the links and joints of URDF 1.0 to 1.2 [https://wiki.ros.org/urdf/XML], and the rotor
+/// inertia of `<transmission>`. As in urdfdom, `quat_xyzw` counts where the URDF states version 1.1
+/// or later, limits of acceleration, deceleration and jerk from 1.2 on; elsewhere they are ignored,
+/// and a warning says so. Known, and left to others: visual
 /// and collision shapes, materials, sensors, calibration, safety controllers, extensions of
 /// simulators, all else of transmissions, and elements of another XML namespace. Any other element
 /// or attribute gives a warning, with the name that was probably meant. A Chain is made from this

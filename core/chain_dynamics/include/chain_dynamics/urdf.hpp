@@ -63,9 +63,9 @@ struct UrdfOptions {
   /// positive definite at every position. (Where it is, as within a joint of two crossing axes, it
   /// may be.)
   bool allow_massless = false;
-  /// Position at which a movable joint beside the path or beyond the tip is held; rad, prismatic m.
-  /// It is asked for every joint of the robot; nothing: held at zero. A position for a joint that
-  /// isn't held gives a warning.
+  /// Position at which a movable joint is held; rad, prismatic m. It is asked for every joint of the
+  /// robot; nothing: held at zero beside the path and beyond the tip. The chain lacks joints of the
+  /// path that are held. A position without influence gives a warning.
   std::function<std::optional<double>(const std::string& joint)> locked_position = {};
   /// Rotor inertia of a joint of the chain, reflected to the joint; kg m^2, prismatic kg. It is
   /// asked for every joint of the chain, and may answer with what the description states. Empty:

@@ -34,8 +34,9 @@ OwnedVector jointNumbers(const std::string& name, const std::vector<double>& val
 
 /// Limits of n joints; infinity where a description states none.
 struct DescribedLimits {
-  ReferenceLimits reference;  ///< positions and velocities: rad, rad/s (prismatic m, m/s)
+  ReferenceLimits reference;  ///< of motions
   OwnedVector effort;         ///< n; N m (prismatic N)
+  OwnedVector jerk;           ///< n; rad/s^3 (prismatic m/s^3)
 };
 
 /// Limits of joints from a robot description.

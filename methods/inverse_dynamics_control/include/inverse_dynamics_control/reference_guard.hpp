@@ -26,9 +26,11 @@ inline namespace v2 {
 
 /// Limits of a reference, n numbers each; infinity: no limit.
 struct ReferenceLimits {
-  OwnedVector lower;     ///< rad (prismatic m)
-  OwnedVector upper;     ///< rad (prismatic m), not below `lower`
-  OwnedVector velocity;  ///< > 0; rad/s (prismatic m/s)
+  OwnedVector lower;         ///< rad (prismatic m)
+  OwnedVector upper;         ///< rad (prismatic m), not below `lower`
+  OwnedVector velocity;      ///< > 0; rad/s (prismatic m/s)
+  OwnedVector acceleration;  ///< of speeding up, > 0; rad/s^2 (prismatic m/s^2)
+  OwnedVector deceleration;  ///< of slowing down, likewise
 
   /// No limit at all.
   static ReferenceLimits none(Eigen::Index joints);
@@ -36,12 +38,13 @@ struct ReferenceLimits {
 
 /// Why a reference is followed no longer.
 enum class StopReason {
-  kNone,       ///< it is followed
-  kNotFinite,  ///< a number of it is NaN or infinite
-  kPosition,   ///< a position lies beyond its limits
-  kVelocity,   ///< a velocity lies beyond its limit
-  kStale,      ///< no new one came while the last one still moves
-  kWrongSize,  ///< it hasn't one number per joint
+  kNone,          ///< it is followed
+  kNotFinite,     ///< a number of it is NaN or infinite
+  kPosition,      ///< a position lies beyond its limits
+  kVelocity,      ///< a velocity lies beyond its limit
+  kAcceleration,  ///< an acceleration lies beyond its limit
+  kStale,         ///< no new one came while the last one still moves
+  kWrongSize,     ///< it hasn't one number per joint
 };
 
 /// Text of a message, without a full stop. Real time: no allocation, lock, exception or

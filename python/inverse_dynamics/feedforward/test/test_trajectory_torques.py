@@ -5,6 +5,7 @@ import re
 import sqlite3
 from contextlib import closing
 from dataclasses import replace
+from shutil import rmtree
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from example_recordings import (
     table_of,
     trajectory,
     write_messages,
+    write_motion,
     write_table,
     write_trajectories,
 )
@@ -252,6 +254,157 @@ def test_topics_of_unknown_type_are_left_out_and_said(tmp_path, torques, robot):
     assert topic == TOPIC
     filled = STORE.deserialize_cdr(raw, TRAJECTORY)
     np.testing.assert_allclose(filled.points[7].effort, torques[7], rtol=0, atol=1e-12)
+
+
+def plan(points=301, seconds=3.0):
+    """A move from rest to rest along a quintic: time, q, qd, qdd."""
+    time = np.linspace(0, seconds, points)
+    s = time[:, None] / seconds
+    start = np.array([0, -1.5, 1, 0, 0.5, 0])
+    way = np.array([1, 0.5, -0.5, 0.7, -1, 0.3])
+    q = start + way * (10 * s**3 - 15 * s**4 + 6 * s**5)
+    qd = way * (30 * s**2 - 60 * s**3 + 30 * s**4) / seconds
+    return time, q, qd, way * (60 * s - 180 * s**2 + 120 * s**3) / seconds**2
+
+
+def torques_of_plan(directory, robot, kind, time, q, qd, qdd):
+    if kind == "table":
+        path = directory / "plan.csv"
+        write_motion(path, JOINTS, time, position=q, velocity=qd, acceleration=qdd)
+    else:
+        stamps = np.round(time * 1e9).astype(int).tolist()
+        points = [(t, *arrays, []) for t, *arrays in zip(stamps, q, qd, qdd, strict=True)]
+        path = write_trajectories(directory / "bag", [trajectory(JOINTS, points)])
+    return trajectory_torques(path, robot)
+
+
+def with_jump(q, joint, by):
+    q = q.copy()
+    q[150:, joint] += by
+    return q
+
+
+DEGREE = 180 / np.pi
+ELBOW = np.arange(6) == 2
+WRONG = {
+    "zero velocities": (
+        lambda t, q, qd, qdd: (t, q, 0 * qd, 0 * qdd),
+        r"velocities contradict .*: they are zero, most in shoulder_pan_joint, which goes 0.00625 from "
+        r"POINT 150 \(1.49 s\) to POINT 151 \(1.5 s\), by velocities 0; so torques are those of an arm that "
+        "stands still",
+    ),
+    "zero velocities of a joint": (
+        lambda t, q, qd, qdd: (t, q, np.where(ELBOW, 0, qd), qdd),
+        "velocities of elbow_joint contradict .*: they are zero, most in elbow_joint",
+    ),
+    "zero accelerations": (
+        lambda t, q, qd, qdd: (t, q, qd, 0 * qdd),
+        "accelerations of all joints are zero, though velocities change, .*; so torques lack inertia",
+    ),
+    "velocities of another time": (
+        lambda t, q, qd, qdd: (2 * t, q, qd, qdd),
+        "positions change 0.5 times as fast as velocities say, in every joint, most in",
+    ),
+    "reversed": (
+        lambda t, q, qd, qdd: (t, q, np.where(ELBOW, -qd, qd), qdd),
+        "velocities of elbow_joint contradict the slope of the positions: they are reversed",
+    ),
+    "another motion's": (
+        lambda t, q, qd, qdd: (t, q, np.where(ELBOW, np.cos(9 * t)[:, None], qd), qdd),
+        "velocities of elbow_joint aren't those of the positions, most in elbow_joint",
+    ),
+    "velocities in degrees": (
+        lambda t, q, qd, qdd: (t, q, DEGREE * qd, qdd),
+        "velocities are in degrees, positions in rad",
+    ),
+    "positions in degrees": (
+        lambda t, q, qd, qdd: (t, DEGREE * q, qd, qdd),
+        "positions are in degrees, velocities in rad",
+    ),
+    "all in degrees": (
+        lambda t, q, qd, qdd: (t, DEGREE * q, DEGREE * qd, DEGREE * qdd),
+        r"the position of all joints passes limits, first in POINT 1 \(0 s\): expected -6.283 to 6.283 rad of "
+        r"shoulder_lift_joint, got -85.94; .* if positions are degrees",
+    ),
+    "a jump": (
+        lambda t, q, qd, qdd: (t, with_jump(q, 1, 0.05), qd, qdd),
+        r"the position of shoulder_lift_joint jumps by 0.0531 from POINT 150 \(1.49 s\) to POINT 151 \(1.5 s\), "
+        "velocities say 0.0031",
+    ),
+    "too fast": (
+        lambda t, q, qd, qdd: (t / 6, q, 6 * qd, 36 * qdd),
+        r"the velocity of shoulder_pan_joint, wrist_2_joint passes limits, first in POINT 76 \(0.125 s\): "
+        "expected -2.094 to 2.094 rad/s",
+    ),
+    "too heavy": (
+        lambda t, q, qd, qdd: (t, q, qd, qdd + 200 * ELBOW),
+        "the torque of shoulder_lift_joint, elbow_joint passes limits, first in POINT 1 .*expected -330 to 330 N m",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", ["table", "recording"])
+@pytest.mark.parametrize("mistake", WRONG)
+def test_a_plan_that_contradicts_itself_or_the_robot_is_noted(tmp_path, robot, kind, mistake):
+    spoil, note = WRONG[mistake]
+    found = torques_of_plan(tmp_path, robot, kind, *spoil(*plan()))
+    note = note.replace("POINT", "row" if kind == "table" else "point")
+    assert any(re.search(note, text) for text in found.notes), found.notes
+    assert found.numbers()["notes"] == found.notes
+
+
+def test_limits_of_urdf_1_2_count_for_speeding_up_and_for_slowing_down(tmp_path, robot):
+    limited = tmp_path / "limited.urdf"
+    urdf = URDF.read_text().replace("<robot ", '<robot version="1.2" ', 1)
+    urdf = urdf.replace('effort="150.0"', 'acceleration="9" deceleration="0.3" effort="150.0"', 1)
+    limited.write_text(urdf)
+    time, q, qd, qdd = plan()
+    (note,) = torques_of_plan(
+        tmp_path, replace(robot, urdf=limited), "table", time, q, qd, qdd
+    ).notes
+    k = int(np.argmax((qd[:, 2] * qdd[:, 2] < 0) & (np.abs(qdd[:, 2]) > 0.3013)))
+    assert note.startswith(
+        f"the acceleration of elbow_joint passes limits, first in row {k + 1} ({time[k]:g} s): expected "
+        "-0.3 to 0.3 rad/s^2 of elbow_joint, got 0.3"
+    )
+
+
+@pytest.mark.parametrize("points", [4, 7, 30, 300, 3000])
+def test_nothing_is_noted_of_a_sound_plan(tmp_path, robot, points):
+    assert torques_of_plan(tmp_path, robot, "table", *plan(points)).notes == ()
+    rounded = (values.round(4) for values in plan(points))
+    assert torques_of_plan(tmp_path, robot, "table", *rounded).notes == ()
+
+
+@pytest.mark.parametrize("kind", ["table", "recording"])
+def test_times_that_do_not_increase_are_refused(tmp_path, robot, kind):
+    time, *motion = plan()
+    point = "row" if kind == "table" else "point"
+    for wrong, place in (
+        (0 * time, f"got 0 s in {point} 2 after 0 s, the first of 300 such places"),
+        (np.where(time == time[150], time[149], time), f"got 1.49 s in {point} 151 after 1.49 s;"),
+        (np.where(time == time[150], 0.2, time), f"got 0.2 s in {point} 151 after 1.49 s;"),
+    ):
+        with pytest.raises(BagError, match=f"time: expected times that increase, {place}"):
+            torques_of_plan(tmp_path, robot, kind, wrong, *motion)
+        (tmp_path / "bag").exists() and rmtree(tmp_path / "bag")
+    with pytest.raises(BagError, match="steps of 10, in which positions .*: are they ms"):
+        torques_of_plan(tmp_path, robot, kind, 1000 * time, *motion)
+
+
+def test_a_trajectory_before_its_start_is_refused(tmp_path, robot):
+    time, *motion = plan(5)
+    with pytest.raises(BagError, match="point 1: time_from_start: expected 0 s or more, got -1"):
+        torques_of_plan(tmp_path, robot, "recording", time - 1, *motion)
+
+
+def test_of_many_trajectories_the_first_mistake_of_a_kind_is_noted(tmp_path, robot):
+    rest = [0.0] * 6
+    points = [(0, rest, rest, rest, []), (10**9, [0.3] * 6, rest, rest, [])]
+    bag = write_trajectories(tmp_path / "bag", [trajectory(JOINTS, points)] * 3)
+    (note,) = trajectory_torques(bag, robot).notes
+    assert note.startswith("trajectory 1: velocities contradict the slope of the positions: they ")
+    assert note.endswith("likewise in 2 others")
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1e3, "ms"), (1e9, "ns")])

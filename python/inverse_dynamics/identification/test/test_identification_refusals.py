@@ -12,9 +12,9 @@ import pytest
 from command_line import fails
 from example_recordings import motion
 from example_robots import JOINTS, RIGID_BODY
-from identified_arms import identification, simulated_torques
+from identified_arms import NOISE, arm, identification, predicted_torques, simulated_torques
 
-from inverse_dynamics import Solver, evaluate, identify, load_robot, write_joint_logs
+from inverse_dynamics import Solver, cli, evaluate, identify, load_robot, write_joint_logs
 from inverse_dynamics.diagnosis.rival import PAGE
 from inverse_dynamics.identification.findings import findings_of_errors
 from inverse_dynamics.identification.refusals import check_recordings, check_result
@@ -73,6 +73,39 @@ def test_efforts_that_nothing_measured(log, tmp_path):
     text = str(reason([evaluated(tmp_path, replace(log, effort=effort))]))
     assert "elbow_joint: expected efforts that change, got the same in all samples" in text
     assert "record another topic, or end the chain before it" in text
+
+
+@pytest.mark.parametrize("still", [[0], [2], [3, 5]])
+def test_joints_that_stand_still_are_held(log, tmp_path, capsys, still):
+    moves = ~np.isin(np.arange(6), still)
+    q, qd, qdd = np.where(moves, log.q, 0.7), log.qd * moves, motion()[2] * moves
+    effort = np.where(moves, simulated_torques(q, qd, qdd), 0.0)  # brakes are engaged
+    write_joint_logs(tmp_path / "still", {log.topic: replace(log, q=q, qd=qd, effort=effort)})
+    arguments = [
+        "identify",
+        str(tmp_path / "still"),
+        "--robot",
+        ROBOT,
+        "--out",
+        str(tmp_path / "arm.yaml"),
+    ]
+    assert cli.main(arguments) == 0
+    held = ", ".join(f"{JOINTS[j]} at 0.7 rad" for j in still)
+    assert (
+        " ".join(capsys.readouterr().out.split()).count(f"held, as they stand still: {held};") == 1
+    )
+    identified = tmp_path / "arm.yaml"
+    names = tuple(name for name, m in zip(JOINTS, moves, strict=True) if m)
+    again = evaluate(tmp_path / "still", identified)
+    assert again.joint_names == names
+    assert not any("attaches bodies" in note or "root and tip" in note for note in again.notes)
+    assert max(error.rmse for error in again.errors) < 2 * NOISE
+    # another motion of the others, which has the held ones in the same place
+    q2, qd2, qdd2 = q * (1 - 0.3 * moves), 0.7 * qd, 0.7 * qdd
+    solver = Arm(load_robot(identified)).solver
+    computed = solver.torques(q2[:, moves], qd2[:, moves], qdd2[:, moves])
+    expected = predicted_torques(arm(), q2, qd2, qdd2)[:, moves]
+    assert np.sqrt(((computed - expected) ** 2).mean(axis=0)).max() < 0.02 * np.ptp(expected)
 
 
 def test_a_joint_that_hardly_moves(log, tmp_path):

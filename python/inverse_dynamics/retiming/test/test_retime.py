@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
 import os
+import re
 from xml.etree import ElementTree
 
 import numpy as np
@@ -342,6 +343,28 @@ def test_limits_that_are_not_given_are_those_of_the_description(turner, given):
     assert limits.velocity == given.get("velocity", [3.0])
 
 
+def test_limits_of_urdf_1_2_are_kept_unless_others_are_given(turner, tmp_path):
+    path, limits = [[0.0], [9.0]], 'acceleration="4" deceleration="3" jerk="20" effort'
+    urdf = turner.read_text().replace("effort", limits)
+    (tmp_path / "old.urdf").write_text(urdf)
+    old = retime(path, tmp_path / "old.urdf")
+    assert not len(old.limits.acceleration)
+    assert any("<limit> acceleration is ignored: URDF knows it from 1.2 on" in n for n in old.notes)
+
+    newer = tmp_path / "newer.urdf"
+    newer.write_text(urdf.replace("<robot", '<robot version="1.2"', 1))
+    result = retime(path, newer, rate=1000.0)
+    assert result.notes == ()
+    assert (result.limits.acceleration, result.limits.jerk) == ([3.0], [20.0])
+    assert np.abs(result.qdd).max() <= 3.0 * (1 + 1e-3)
+    assert np.abs(np.diff(result.qdd[:-1], axis=0)).max() / 1e-3 <= 20.0 * (1 + 1e-2)
+    assert np.abs(old.qdd).max() > 4.0
+    given = retime(path, newer, MotionLimits(acceleration=[5.0], jerk=[1e4]))
+    assert np.abs(given.qdd).max() == pytest.approx(5.0, rel=2e-2)
+    at_speed = retime(path, newer, options=RetimeOptions(start_speed=1.0))
+    assert at_speed.notes[0].startswith("jerk isn't limited")
+
+
 def test_limits_and_units_of_a_model_without_a_description_are_its_own(tmp_path):
     model = tmp_path / "slide.yaml"
     model.write_text(SLIDE)
@@ -495,6 +518,46 @@ def test_a_file_without_waypoints_is_named(tmp_path):
     way.write_text(way.read_text().partition("positions")[0] + "positions: []\n")
     with pytest.raises(UserError, match=r"way.yaml: expected two waypoints at least, got 0"):
         retime(way, "ur10_simulated")
+
+
+def test_times_of_a_path_must_increase_unless_all_are_zero(tmp_path, turner):
+    way = write_waypoints(tmp_path, ".yaml")
+    way.write_text(way.read_text().replace("[0, 1, 2, 3]", "[0, 1, 1, 3]"))
+    with pytest.raises(UserError, match=r"got 1 s in waypoint 3 after 1 s"):
+        retime(way, "ur10_simulated")
+    table = tmp_path / "turns.csv"
+    table.write_text("time,position.turn\n0,0\n2,1\n1,2\n")
+    with pytest.raises(UserError, match=r"turns.csv: time: expected .* got 1 s in row 3 after 2 s"):
+        retime(table, turner)
+    for name, stamps in (("untimed", (0, 0, 0)), ("timed", (0, 10**9, 2 * 10**9))):
+        points = [(t, [float(k)], [0.0], [], []) for k, t in enumerate(stamps)]
+        write_trajectories(tmp_path / name, [trajectory(["turn"], points)])
+        assert retime(tmp_path / name, turner).notes == ()
+    points[2] = (5, *points[2][1:])
+    write_trajectories(tmp_path / "back", [trajectory(["turn"], points)])
+    with pytest.raises(UserError, match=r"got 5e-09 s in point 3 after 1 s"):
+        retime(tmp_path / "back", turner)
+
+
+def test_a_path_whose_velocities_are_of_another_unit_or_that_jumps_is_noted(tmp_path, turner):
+    time = np.linspace(0, 2, 41)
+    q, qd = np.sin(time), np.cos(time)
+    path = tmp_path / "turns.csv"
+    for positions, velocities, note in (
+        (q, qd, None),
+        (q, qd * 180 / np.pi, "velocities are in degrees, positions in rad"),
+        (
+            q + (time == time[20]),
+            qd,
+            r"the position of turn jumps by 1.03 from row 20 \(0.95 s\) to row 21",
+        ),
+    ):
+        rows = np.column_stack([time, positions, velocities])
+        np.savetxt(path, rows, "%.6f", header="time position.turn velocity.turn", comments="")
+        notes = retime(path, turner).notes
+        assert (re.search(note, notes[0]) and len(notes) == 1) if note else notes == ()
+    (note,) = retime((q + (time == time[20]))[:, None], turner).notes
+    assert note.startswith("the position of turn jumps by 1.03 from waypoint 20 to waypoint 21")
 
 
 def test_wrong_paths_are_refused():

@@ -38,6 +38,27 @@ def check(trajectory: FourierTrajectory | WaypointTrajectory, **options: object)
     check_trajectory(checked, trajectory, MotionLimits.of(checked), ContactChecker(checked))
 
 
+def test_limits_of_acceleration_and_jerk_are_those_of_urdf_1_2() -> None:
+    def checked(limits: str) -> None:
+        urdf = (
+            two_links()
+            .replace("<robot", '<robot version="1.2"')
+            .replace("<limit", f"<limit {limits}")
+        )
+        limited = SimulatedRobot.from_urdf(urdf, tip="tip")
+        check_trajectory(limited, sway(velocity=1.0), MotionLimits.of(limited), None)
+
+    checked('acceleration="6.4" deceleration="6.4" jerk="40"')  # 2 pi and its square at 1 Hz
+    with pytest.raises(
+        TrajectoryError, match=r"shoulder: acceleration at 0.\d+ s: expected -5 to 5"
+    ):
+        checked('acceleration="6.4" deceleration="5"')
+    with pytest.raises(
+        TrajectoryError, match=r"shoulder: jerk at 0.\d+ s: expected -20 to 20 rad/s\^3"
+    ):
+        checked('jerk="20"')
+
+
 def test_motion_within_all_limits_passes() -> None:
     check(sway(velocity=1.99))
 

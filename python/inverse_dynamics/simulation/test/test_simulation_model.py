@@ -18,6 +18,7 @@ from simulation_arms import (
     two_links,
 )
 
+from inverse_dynamics import FastModel
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.model import JointFriction, Payload, SimulatedRobot
 
@@ -37,6 +38,22 @@ def test_dynamics_are_those_of_the_reference_states(name: str) -> None:
     for state in states:
         H = np.reshape(state["inertia"], (len(state["q"]),) * 2)
         np.testing.assert_allclose(arm.inertia_matrix(np.array(state["q"])), H, rtol=0, atol=1e-12)
+
+
+def test_quaternions_turn_as_in_the_engine() -> None:
+    urdf = (
+        two_links()
+        .replace('rpy="0 0 0"', "")
+        .replace('<origin xyz="0.5 0 0"', '<origin xyz="0.5 0 0" quat_xyzw="0.5 0.4 -0.2 0.6"')
+    )
+    q, qd, qdd = np.random.default_rng(0).uniform(-2.0, 2.0, (3, 5, 3))
+    torques = []
+    for version in ("1.0", "1.1"):
+        text = urdf.replace("<robot", f'<robot version="{version}"')
+        torques.append(SimulatedRobot.from_urdf(text, tip="tip").torques(q, qd, qdd))
+        engine = FastModel.from_urdf(text, tip="tip").torques(q, qd, qdd)
+        np.testing.assert_allclose(torques[-1], engine, rtol=0, atol=1e-10)
+    assert np.abs(torques[0] - torques[1]).max() > 1  # only version 1.1 has quaternions
 
 
 def test_warnings_of_mujoco_are_notes(capfd: pytest.CaptureFixture[str]) -> None:
