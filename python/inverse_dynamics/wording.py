@@ -16,7 +16,7 @@ TERMINAL = "INVERSE_DYNAMICS_IDS"
 _OPTION = re.compile(
     r"`[^`]*`|\bids [a-z]+ [^;,]*| \(ids: --[a-z-]+\)|"
     r"(?<![\w-])--([a-z][a-z-]+)(?: \(\w+=\))?"
-    r"(?: ('[^']*'|(?:(?<=effort-is )|(?<=clock )|(?<=friction )|(?<=accept ))[a-z_]+|"
+    r"(?: ('[^']*'|(?:(?<=effort-is )|(?<=clock )|(?<=friction )|(?<=accept ))(?!(?:and|or)\b)[a-z_]+|"
     r"[\w.]+=\.\.\.|[A-Z]+(?:,[A-Z]+)*(?![\w=])|"
     r"[^\s;:)]*[=\d/](?:[^\s;:)]*[^\s;:),.])?|[^\s;:,]+(?=:)))?"
 )
