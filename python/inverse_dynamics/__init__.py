@@ -74,6 +74,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.robots.robots import Robot as Robot
     from inverse_dynamics.robots.robots import load_robot as load_robot
     from inverse_dynamics.robots.robots import robot_names as robot_names
+    from inverse_dynamics.simulation.run import SimulatedRun as SimulatedRun
+    from inverse_dynamics.simulation.run import simulate as simulate
 
 _MODULES = {  # and the names that users know
     "_core": ("FastModel", "JointPath", "MotionLimits", "Solver", "available_solvers"),
@@ -101,6 +103,7 @@ _MODULES = {  # and the names that users know
     "recordings.recordings": ("read_recording",),
     "retiming.retiming": ("Retimed", "retime", "write_retimed"),
     "robots.robots": ("Robot", "load_robot", "robot_names"),
+    "simulation.run": ("SimulatedRun", "simulate"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
 

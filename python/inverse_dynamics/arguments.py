@@ -59,7 +59,10 @@ def check_call(function: Callable[..., object], /, *args: object, **kwargs: obje
     names = [name for name in known if name != "self"]
     unknown = [name for name in kwargs if name not in names]
     if unknown and all(p.kind is not Parameter.VAR_KEYWORD for p in known.values()):
-        hint = did_you_mean(unknown[0], names) or f"known: {', '.join(names)}"
+        word = rf"\b{re.escape(unknown[0])}\b"  # `robot` of `plugin: Robot | str`
+        takes = [n for n in names if re.search(word, _readable(str(known[n].annotation)), re.I)]
+        hint = f"did you mean {takes[0]}?" if takes else did_you_mean(unknown[0], names)
+        hint = hint or f"known: {', '.join(names)}"
         raise ArgumentError(f"{place}: argument {harmless(unknown[0])}: unknown; {hint}")
     try:
         given = signature(function).bind(*args, **kwargs).arguments
@@ -129,6 +132,7 @@ def raiser(function: Any, error: Exception) -> Callable[..., NoReturn] | None:
 
 
 _READABLE = {
+    r"\bRecorded\b": "Path | str | JointLog | Mapping[str, Any] | DataFrame",
     r"\b(?:[A-Za-z_]\w*\.)+(?=\w)": "",  # modules
     r"SupportsFloat( \| SupportsIndex)?": "float",
     r"SupportsInt( \| SupportsIndex)?": "int",
@@ -179,8 +183,9 @@ def _is(value: Any, kind: str) -> bool:
         return len(value) == len(kinds) and all(map(_fits, value, kinds))
     if name in ("dict", "Mapping"):
         return hasattr(value, "keys") and all(isinstance(key, str) for key in value)
-    if name == "DataFrame":  # of pandas or polars, which needn't be there
-        return name in [base.__name__ for base in type(value).__mro__]
+    if name in ("DataFrame", "JointLog"):  # of pandas or polars, which needn't be there
+        named = isinstance(value, np.ndarray) and value.dtype.names is not None
+        return named or name in [base.__name__ for base in type(value).__mro__]
     return isinstance(value, getattr(sys.modules.get("inverse_dynamics._core"), kind, object))
 
 

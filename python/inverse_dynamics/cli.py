@@ -35,7 +35,7 @@ from inverse_dynamics.outputs.files import (
 )
 from inverse_dynamics.terminal.help_text import HelpFormatter, filled, terminal_width, wrapped
 from inverse_dynamics.terminal.options import Options
-from inverse_dynamics.wording import did_you_mean, not_built
+from inverse_dynamics.wording import TERMINAL, did_you_mean, not_built
 from inverse_dynamics.wording import message as _message
 
 if TYPE_CHECKING:
@@ -216,6 +216,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line; give its exit code."""
     given = list(sys.argv[1:] if arguments is None else arguments)
     _write_any_character()
+    os.environ[TERMINAL] = "1"
     try:
         with _stopped_by_signals(), _signals_out_of_imports():
             return _run(given)
@@ -231,6 +232,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         _say(f"error: {crash_report(error, given)}; {outcome()}")
         return 2 if isinstance(error, ModuleNotFoundError) else 1
+    finally:
+        del os.environ[TERMINAL]
 
 
 def _run(given: list[str]) -> int:

@@ -4,17 +4,21 @@
 The command line prints the text and ends with exit code 2; a script catches `UserError`.
 """
 
-from inverse_dynamics.wording import message
+import os
+
+from inverse_dynamics.wording import TERMINAL, in_python, message
 
 
 class UserError(Exception):
     """Anything a user can put right: a file, an option, a name.
 
-    Its text may quote a file: str() gives it printable and of bearable length, args as it is.
+    Its text may quote a file: str() gives it printable and of bearable length, args as it is. It names options of
+    the command `ids`, for which str() names arguments of functions outside of this command.
     """
 
     def __str__(self) -> str:
-        return message(super().__str__())
+        text = super().__str__()
+        return message(text if TERMINAL in os.environ else in_python(text))
 
 
 class PartialError(UserError):

@@ -9,6 +9,27 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+TERMINAL = "INVERSE_DYNAMICS_IDS"
+"""Set in the environment of the command `ids` and its workers: errors name its options."""
+
+# A command, which stays as it is; or an option, perhaps with its value.
+_OPTION = re.compile(
+    r"`[^`]*`|\bids [a-z]+ [^;,]*| \(ids: --[a-z-]+\)|"
+    r"(?<![\w-])--([a-z][a-z-]+)(?: \(\w+=\))?"
+    r"(?: ('[^']*'|(?:(?<=effort-is )|(?<=clock )|(?<=friction )|(?<=accept ))(?!(?:and|or)\b)[a-z_]+|"
+    r"[\w.]+=\.\.\.|[A-Z]+(?:,[A-Z]+)*(?![\w=])|"
+    r"[^\s;:)]*[=\d/](?:[^\s;:)]*[^\s;:),.])?|[^\s;:,]+(?=:)))?"
+)
+_ARGUMENTS = {
+    "from": "start",
+    "to": "end",
+    "parameter": "parameters",
+    "known-payload": "known_payloads",
+    "without-rule": "without_rules",
+}
+_SWITCHES = {"overwrite": "True", "optimise": "True", "no-friction": "False", "from-model": "True"}
+_LISTS = ("scale", "accept", "without-rule", "known-payload", "hold-out")
+_NUMBERS = re.compile(r"[-+.\de]+(,[-+.\de]+)*|[A-Z]+(,[A-Z]+)*")
 _LONGEST_WORD = 1000  # characters
 _LONGEST_TEXT = 10_000
 _WORD = re.compile(rf"\S{{{_LONGEST_WORD + 1},}}")
@@ -102,3 +123,27 @@ def _escape(character: str) -> str:
     if code < 0x100:
         return f"\\x{code:02x}"
     return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+def in_python(text: str) -> str:
+    """A message with arguments of functions in place of options: `columns='time=t'` for `--columns 'time=t'`."""
+    return _OPTION.sub(_argument, text).replace("'] accept=['", "', '")
+
+
+def _argument(found: re.Match[str]) -> str:
+    option, value = found.groups()
+    if option is None:
+        return "" if found[0].startswith(" (ids:") else found[0]
+    name = _ARGUMENTS.get(option, option.replace("-", "_").removeprefix("no_"))
+    if option in _SWITCHES:
+        return f"{name}={_SWITCHES[option]}"
+    if value is None:
+        begins = found.start() == 0 and found.string[found.end() :].startswith(":")
+        return name if begins else f"{name}="
+    value = value.strip("'")
+    if option == "parameter":
+        key, _, number = value.partition("=")
+        return f"{name}={{'{key}': {number}}}"
+    if option not in _LISTS and _NUMBERS.fullmatch(value):
+        return f"{name}=({value.replace(',', ', ')})" if "," in value else f"{name}={value}"
+    return f"{name}=['{value}']" if option in _LISTS else f"{name}='{value}'"

@@ -19,9 +19,21 @@ namespace inverse_dynamics_tools {
 /// Doubles, row after row; an array of another type or layout is copied into one.
 using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
+/// Whether an object is an array of no derived class.
+inline bool isPlainArray(pybind11::handle object) {
+  return Py_TYPE(object.ptr()) == pybind11::detail::npy_api::get().PyArray_Type_;
+}
+
+/// Whether an array has masked entries, whose numbers mean nothing.
+inline bool isMasked(pybind11::handle object) {
+  return !isPlainArray(object) && pybind11::isinstance<pybind11::array>(object) &&
+         pybind11::hasattr(object, "mask") && object.attr("mask").attr("any")().cast<bool>();
+}
+
 /// Whether an object is a number, or an array or sequence of numbers: numpy would read texts as
 /// numbers, and take the real parts of complex ones.
 inline bool hasNumbers(pybind11::handle object) {
+  if (isMasked(object)) return false;
   const auto array = pybind11::array::ensure(object);
   return array && std::strchr("biuf", array.dtype().kind()) != nullptr;
 }

@@ -149,19 +149,48 @@ void bindEstimateEnums(py::module_& module) {
 
 void bindEstimators(py::module_& module) {
   using O = EstimatorOptions;
-  bindOptions(module, "EstimatorOptions", "Options of both estimators.",
-              "gain: 1/s; tracking: rad/s; friction_band: N m; longest_period: s.",
-              Field{"gain", &O::gain}, Field{"velocity", &O::velocity},
-              Field{"tracking", &O::tracking}, Field{"compensated", &O::compensated},
-              Field{"friction_band", &O::friction_band},
-              Field{"longest_period", &O::longest_period});
+  bindOptions(module, "EstimatorOptions", "Options of both estimators.", "",
+              Field{"gain", &O::gain, "(n,) 1/s"},
+              Field{"velocity", &O::velocity, "where velocities come from"},
+              Field{"tracking", &O::tracking, "rad/s, of velocities from positions"},
+              Field{"compensated", &O::compensated, "what the robot adds by itself"},
+              Field{"friction_band", &O::friction_band,
+                    "(n,) N m, what the friction model may be wrong by; empty: nothing"},
+              Field{"longest_period", &O::longest_period, "s; samples further apart are a gap"});
   py::class_<ExternalTorqueEstimator>(module, "ExternalTorqueEstimator",
                                       "External torques of each joint, N m.")
       .def("update", &update, "q"_a, "effort"_a, "period"_a, "qd"_a = py::none(),
-           "(torques, EstimateStatus).")
+           R"(External torques after one more sample.
+
+Parameters
+----------
+q, qd : array_like, (n,)
+    rad, rad/s (prismatic m, m/s); qd only where velocities are measured.
+effort : array_like, (n,)
+    Measured torques, N m (prismatic N): the mean since the sample before.
+period : float
+    s since the sample before; 0: the first one.
+
+Returns
+-------
+tuple of ndarray, (n,), and EstimateStatus
+    N m (prismatic N), zero unless the status is OK.)")
       .def("run", &runEstimator, "time"_a, "q"_a, "effort"_a, "qd"_a = py::none(),
-           "(N, n) torques and (N,) whether they are estimates, of N samples.")
-      .def("reset", &ExternalTorqueEstimator::reset, "The next sample is the first one.")
+           R"(update() of N samples, one after another.
+
+Parameters
+----------
+time : array_like, (N,)
+    s.
+q, effort, qd : array_like, (N, n)
+    As update() takes them.
+
+Returns
+-------
+tuple of ndarray, (N, n), and ndarray of bool, (N,)
+    Torques, N m (prismatic N); whether they are estimates.)")
+      .def("reset", &ExternalTorqueEstimator::reset,
+           "Begins again: the next sample is the first one.")
       .def_property_readonly("torques", &ExternalTorqueEstimator::torques, "(n,) N m.");
   py::class_<MomentumObserver, ExternalTorqueEstimator>(module, "MomentumObserver",
                                                         "From the generalised momentum H(q) qd.")
@@ -173,15 +202,15 @@ void bindEstimators(py::module_& module) {
 
 void bindThresholds(py::module_& module) {
   using T = ContactThresholds;
-  py::class_<T>(module, "ContactThresholds", "Thresholds (n,), and how they came about.")
-      .def_readonly("torques", &T::torques, "N m.")
-      .def_readonly("noise", &T::noise, "Root mean square, N m.")
-      .def_readonly("correlation_time", &T::correlation_time, "s.")
-      .def_readonly("peaks", &T::peaks, "Number of peaks above the level.")
-      .def_readonly("level", &T::level, "N m.")
-      .def_readonly("scale", &T::scale, "N m.")
-      .def_readonly("shape", &T::shape)
-      .def_readonly("false_alarms_per_hour", &T::false_alarms_per_hour);
+  bindRecord(module, "ContactThresholds", "Thresholds (n,), and how they came about.",
+             Field{"torques", &T::torques, "(n,) N m (prismatic N), of absolute values"},
+             Field{"noise", &T::noise, "(n,) N m, root mean square of the external torques"},
+             Field{"correlation_time", &T::correlation_time, "(n,) s"},
+             Field{"peaks", &T::peaks, "(n,) number of peaks above the level"},
+             Field{"level", &T::level, "(n,) N m"},
+             Field{"scale", &T::scale, "(n,) N m, of the generalised Pareto distribution"},
+             Field{"shape", &T::shape, "(n,) of that distribution"},
+             Field{"false_alarms_per_hour", &T::false_alarms_per_hour, "of all joints together"});
   module.def(
       "contact_thresholds",
       [](const Array& quiet, double period, double false_alarms_per_hour,
@@ -194,7 +223,21 @@ void bindThresholds(py::module_& module) {
         return contactThresholds(columns, period, false_alarms_per_hour, joint_names);
       },
       "quiet"_a, "period"_a, "false_alarms_per_hour"_a, "joint_names"_a,
-      "From external torques (N, n) without contact, period [s] apart, all of them estimates.");
+      R"(Thresholds that external torques without contact exceed at a stated rate.
+
+Parameters
+----------
+quiet : array_like, (N, n)
+    External torques without contact, N m (prismatic N), all of them estimates.
+period : float
+    s between samples.
+false_alarms_per_hour : float
+    Of all joints together.
+joint_names : sequence of n str
+
+Returns
+-------
+ContactThresholds)");
 }
 
 void bindDetector(py::module_& module) {
@@ -212,13 +255,36 @@ void bindDetector(py::module_& module) {
             return detector.update(torques, period);
           },
           "torques"_a, "period"_a,
-          "Whether something touches the robot; torques: (n,) N m, period: s.")
+          R"(Whether something touches the robot.
+
+Parameters
+----------
+torques : array_like, (n,)
+    External torques, N m (prismatic N).
+period : float
+    s since the sample before.
+
+Returns
+-------
+bool)")
       .def("run", &runDetector, "time"_a, "torques"_a, "valid"_a = py::none(),
-           "(N,) The same of N samples. valid: (N,) those that are looked at; in the others a "
-           "contact\n"
-           "stays as it is. None: all.")
-      .def("reset", &ContactDetector::reset, "No contact.")
-      .def_property_readonly("contact", &ContactDetector::contact)
+           R"(update() of N samples, one after another.
+
+Parameters
+----------
+time : array_like, (N,)
+    s.
+torques : array_like, (N, n)
+    External torques, N m (prismatic N).
+valid : array_like of bool, (N,), optional
+    Samples to look at; at the others a contact stays as it is. By default all.
+
+Returns
+-------
+ndarray of bool, (N,))")
+      .def("reset", &ContactDetector::reset, "Begins again, without a contact.")
+      .def_property_readonly("contact", &ContactDetector::contact,
+                             "Whether something touches the robot.")
       .def_property_readonly("joint", &ContactDetector::joint,
                              "Which joint's torque began the contact; -1: none.")
       .def_property_readonly("excess", &ContactDetector::excess,
@@ -250,9 +316,30 @@ void bindTipWrench(py::module_& module) {
             const WrenchStatus status = tip.update(q, torques);
             return std::pair{numbersOf(tip.wrench()), status};
           },
-          "q"_a, "torques"_a, "((6,) force and torque, WrenchStatus).")
-      .def("run", &runTipWrench, "q"_a, "torques"_a,
-           "(N, 6) forces and torques, (N,) how many directions can't be seen, of N samples.")
+          "q"_a, "torques"_a, R"(The wrench at the tip of one sample.
+
+Parameters
+----------
+q : array_like, (n,)
+    rad (prismatic m).
+torques : array_like, (n,)
+    External torques, N m (prismatic N).
+
+Returns
+-------
+tuple of ndarray, (6,), and WrenchStatus
+    Force [N] and torque [N m] about the tip, in the root's axes; zero unless the status is OK.)")
+      .def("run", &runTipWrench, "q"_a, "torques"_a, R"(update() of N samples.
+
+Parameters
+----------
+q, torques : array_like, (N, n)
+    As update() takes them.
+
+Returns
+-------
+tuple of ndarray, (N, 6), and ndarray of int, (N,)
+    Forces [N] and torques [N m]; how many directions can't be seen.)")
       .def_property_readonly(
           "signal_to_noise", [](const TipWrench& tip) -> Vector { return tip.signalToNoise(); },
           "(6,) the greatest first.")

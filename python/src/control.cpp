@@ -38,6 +38,30 @@ Reference referenceOf(const Vector& q, const Vector& qd, const Vector& qdd) {
   return reference;
 }
 
+// Docstrings of updates, in parts.
+const std::string kUpdate = "Torques of one cycle.\n\nParameters\n----------\n";
+const std::string kState =
+    "q, qd : array_like, (n,)\n    Measured, rad, rad/s (prismatic m, m/s).\n";
+const std::string kPositions = "q_reference : array_like, (n,)\n    rad (prismatic m).\n";
+const std::string kVelocities = "qd_reference : array_like, (n,)\n    rad/s (prismatic m/s).\n";
+const std::string kAccelerations =
+    "qdd_reference : array_like, (n,)\n    rad/s^2 (prismatic m/s^2).\n";
+const std::string kPeriod = "period : float\n    s since the cycle before.\n";
+const std::string kTorques =
+    "\nReturns\n-------\ntuple of ndarray, (n,), and Status\n    tau, N m (prismatic N): the safe "
+    "torque where the status is a refusal.";
+constexpr const char* kSetGains = R"(Takes other gains, from the next update on.
+
+Parameters
+----------
+gains : Gains or PdGains
+    (n,) each, as the law was made with.
+
+Raises
+------
+ValueError
+    Wrong sizes, negative or infinite numbers: nothing has changed.)";
+
 /// An update of a law with these arguments: its torques, and how it ended.
 template <class Law, class... Arguments>
 Result updated(Law& law, const Arguments&... arguments) {
@@ -128,10 +152,10 @@ Shares sharesOf(const OneOrEach& given) {
   return std::visit([](const auto& values) { return Shares(values); }, given);
 }
 
-auto shareField(const char* name, Shares Compensated::*member) {
+auto shareField(const char* name, Shares Compensated::*member, const char* doc) {
   return Field<Compensated, OneOrEach, OneOrEach>(
       name, [member](const Compensated& c) { return of(c.*member); },
-      [member](Compensated& c, const OneOrEach& given) { c.*member = sharesOf(given); });
+      [member](Compensated& c, const OneOrEach& given) { c.*member = sharesOf(given); }, doc);
 }
 
 auto viscousField() {
@@ -148,25 +172,41 @@ void bindLawOptions(py::module_& module) {
   using C = Compensated;
   bindOptions<0>(module, "Compensated",
                  "What the robot adds by itself: shares, 0 to 1, of all joints or (n,).", "",
-                 shareField("gravity", &C::gravity), shareField("coriolis", &C::coriolis),
-                 shareField("friction", &C::friction), viscousField());
+                 shareField("gravity", &C::gravity, "of the gravity torques"),
+                 shareField("coriolis", &C::coriolis, "of the Coriolis torques"),
+                 shareField("friction", &C::friction, "of friction"), viscousField());
   using F = FrictionOptions;
   bindOptions<0>(module, "FrictionOptions", "How friction is compensated; speeds in rad/s.", "",
-                 Field{"source", &F::source}, Field{"dead_band", &F::dead_band},
-                 Field{"blend", &F::blend}, Field{"scale", &F::scale});
+                 Field{"source", &F::source, "whose velocity decides"},
+                 Field{"dead_band", &F::dead_band, "rad/s, below which there is none"},
+                 Field{"blend", &F::blend, "rad/s, over which it sets in"},
+                 Field{"scale", &F::scale, "share of it that is compensated"});
   using O = LawOptions;
   bindOptions<2>(module, "LawOptions", "Options of every law; arrays (n,).", "",
                  limitField("effort_limit", &OutputLimits::effort, "N m"),
                  Field{"damping", &O::damping, "N m s/rad; of the safe torque"},
                  limitField("rate_limit", &OutputLimits::rate, "N m/s; empty: none"),
-                 Field{"compensated", &O::compensated}, Field{"friction", &O::friction});
-  bindOptions<2>(module, "PdGains", "Gains of a PD law, (n,) each: N m/rad, N m s/rad.", "",
-                 Field{"Kp", &PdGains::Kp}, Field{"Kd", &PdGains::Kd});
-  bindOptions<2>(module, "Gains", "Gains of computed torque, (n,) each.", "",
-                 Field{"Kp", &Gains::Kp}, Field{"Kd", &Gains::Kd})
+                 Field{"compensated", &O::compensated, "what the robot adds by itself"},
+                 Field{"friction", &O::friction, "how friction is compensated"});
+  bindOptions<2>(module, "PdGains", "Gains of a PD law.", "",
+                 Field{"Kp", &PdGains::Kp, "(n,) N m/rad (prismatic N/m)"},
+                 Field{"Kd", &PdGains::Kd, "(n,) N m s/rad (prismatic N s/m)"});
+  bindOptions<2>(module, "Gains", "Gains of computed torque.", "",
+                 Field{"Kp", &Gains::Kp, "(n,) 1/s^2"}, Field{"Kd", &Gains::Kd, "(n,) 1/s"})
       .def_static(
           "of", [](const Vector& w, const Vector& z) { return Gains::of(w, z); },
-          "natural_frequency"_a, "damping_ratio"_a, "Kp = w^2, Kd = 2 z w; w in rad/s.");
+          "natural_frequency"_a, "damping_ratio"_a, R"(Kp = w^2 and Kd = 2 z w.
+
+Parameters
+----------
+natural_frequency : array_like, (n,)
+    w, rad/s.
+damping_ratio : array_like, (n,)
+    z, 1.
+
+Returns
+-------
+Gains)");
 }
 
 void bindLaws(py::module_& module) {
@@ -176,9 +216,16 @@ void bindLaws(py::module_& module) {
           [](ControlLaw& law, const std::optional<Vector>& effort) {
             effort ? law.start(*effort) : law.start();
           },
-          "effort"_a = py::none(), "The loop begins; with the effort that acts now.")
+          "effort"_a = py::none(), R"(Begins a loop.
+
+Parameters
+----------
+effort : array_like, (n,), optional
+    N m (prismatic N) that acts now: rate limits begin there.)")
       .def("hold", &hold, "q"_a, "qd"_a, "period"_a,
-           "(tau, Status) of the safe torque g(q) - damping qd.")
+           ("The safe torque g(q) - damping qd.\n\nParameters\n----------\n" + kState + kPeriod +
+            kTorques)
+               .c_str())
       .def_property_readonly(
           "saturated", [](const ControlLaw& law) { return law.saturated(); },
           "(n,) Whether the last torque was cut to its effort limit.")
@@ -189,30 +236,37 @@ void bindLaws(py::module_& module) {
       module, "ComputedTorque", "tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f.")
       .def(ofSolver<ComputedTorque, Gains, LawOptions>(), "solver"_a, "gains"_a, "options"_a)
       .def("update", &computedTorque, "q"_a, "qd"_a, "q_reference"_a, "qd_reference"_a,
-           "qdd_reference"_a, py::kw_only(), "period"_a, "(tau, Status).")
-      .def("set_gains", &setGains<ComputedTorque, Gains>, "gains"_a,
-           "From the next update on; ValueError, and nothing changed, for bad ones.");
+           "qdd_reference"_a, py::kw_only(), "period"_a,
+           (kUpdate + kState + kPositions + kVelocities + kAccelerations + kPeriod + kTorques)
+               .c_str())
+      .def("set_gains", &setGains<ComputedTorque, Gains>, "gains"_a, kSetGains);
   py::class_<PdGravityCompensation, ControlLaw>(module, "PdGravityCompensation",
                                                 "tau = g(q) + Kp e + Kd ed + f.")
       .def(ofSolver<PdGravityCompensation, PdGains, LawOptions>(), "solver"_a, "gains"_a,
            "options"_a)
       .def("update", &pdGravityCompensation, "q"_a, "qd"_a, "q_reference"_a, "qd_reference"_a,
-           "period"_a, "(tau, Status).")
-      .def("set_gains", &setGains<PdGravityCompensation, PdGains>, "gains"_a,
-           "From the next update on; ValueError, and nothing changed, for bad ones.");
+           "period"_a, (kUpdate + kState + kPositions + kVelocities + kPeriod + kTorques).c_str())
+      .def("set_gains", &setGains<PdGravityCompensation, PdGains>, "gains"_a, kSetGains);
   py::class_<GravityCompensation, ControlLaw>(module, "GravityCompensation",
                                               "tau = g(q) - damping qd + f.")
       .def(ofSolver<GravityCompensation, LawOptions>(), "solver"_a, "options"_a)
       .def("update", &gravityCompensation, "q"_a, "qd"_a, "period"_a, "qd_reference"_a = py::none(),
-           "(tau, Status).");
+           (kUpdate + kState + kPeriod + kVelocities +
+            "    Optional: friction is compensated by it where options say so.\n" + kTorques)
+               .c_str());
   py::class_<FeedForward, ControlLaw>(module, "FeedForward",
                                       "tau = effort + H qdd_ref + C qd + g + f.")
       .def(py::init([](const SolverObject& solver, const LawOptions& options, ModelState at) {
              return FeedForward(solverOf(solver), at, options);
            }),
            "solver"_a, "options"_a, "at"_a = ModelState::kReference)
-      .def("update", &feedForward, "q"_a, "qd"_a, "q_reference"_a, "qd_reference"_a,
-           "qdd_reference"_a, py::kw_only(), "effort"_a, "period"_a, "(tau, Status).");
+      .def(
+          "update", &feedForward, "q"_a, "qd"_a, "q_reference"_a, "qd_reference"_a,
+          "qdd_reference"_a, py::kw_only(), "effort"_a, "period"_a,
+          (kUpdate + kState + kPositions + kVelocities + kAccelerations +
+           "effort : array_like, (n,)\n    N m (prismatic N) that the feed-forward is added to.\n" +
+           kPeriod + kTorques)
+              .c_str());
 }
 
 void bindDamping(py::module_& module) {
@@ -222,7 +276,22 @@ void bindDamping(py::module_& module) {
         return dampingFor(*solverOf(solver), q, rate, period);
       },
       "solver"_a, "q"_a, "rate"_a, "period"_a,
-      "(n,) Damping rate H_jj(q), N m s/rad; rate: 1/s; period of the loop: s.");
+      R"(Damping of the safe torque: rate H_jj(q).
+
+Parameters
+----------
+solver : Solver
+q : array_like, (n,)
+    rad (prismatic m).
+rate : float
+    1/s.
+period : float
+    s, of the loop.
+
+Returns
+-------
+ndarray, (n,)
+    N m s/rad (prismatic N s/m).)");
 }
 
 void bindSafeStop(py::module_& module) {
@@ -232,7 +301,16 @@ void bindSafeStop(py::module_& module) {
       .def(
           "begin",
           [](SafeStop& stop, const Vector& q, const Vector& qd) { return stop.begin(q, qd); },
-          "q"_a, "qd"_a)
+          "q"_a, "qd"_a, R"(Begins a ramp at a motion.
+
+Parameters
+----------
+q, qd : array_like, (n,)
+    rad, rad/s (prismatic m, m/s).
+
+Returns
+-------
+Status)")
       .def(
           "advance",
           [](SafeStop& stop, double period) -> std::tuple<Vector, Vector, Vector> {
@@ -242,9 +320,19 @@ void bindSafeStop(py::module_& module) {
             }
             return {reference.q, reference.qd, reference.qdd};
           },
-          "period"_a, "(q, qd, qdd) of the reference, one period later.")
-      .def_property_readonly("finished", &SafeStop::finished)
-      .def_property_readonly("duration", &SafeStop::duration, "s.");
+          "period"_a, R"(The reference one period later.
+
+Parameters
+----------
+period : float
+    s.
+
+Returns
+-------
+tuple of three ndarray, (n,) each
+    q, qd, qdd: rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).)")
+      .def_property_readonly("finished", &SafeStop::finished, "Whether the ramp has ended.")
+      .def_property_readonly("duration", &SafeStop::duration, "Of the ramp, s.");
 }
 
 }  // namespace

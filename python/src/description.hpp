@@ -12,7 +12,7 @@ namespace inverse_dynamics_tools {
 
 /// An argument `urdf`. A path is read by readDescription(), .xacro files included.
 struct Description {
-  std::string text;
+  std::string text, path;  ///< path: empty where the text was given
 };
 
 /// A path, or a text of a file, in the bytes that it has there: those that aren't UTF-8 are lone
@@ -84,6 +84,7 @@ struct type_caster<inverse_dynamics_tools::Description> {
     if (is_text) value.text = source.cast<std::string>();
     if (is_text && !inverse_dynamics_tools::namesDescription(value.text)) return true;
     value.text = inverse_dynamics_tools::readDescription(reinterpret_borrow<object>(source));
+    value.path = str(source).cast<std::string>();
     return true;
   }
 };

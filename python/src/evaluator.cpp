@@ -77,7 +77,7 @@ void bindErrors(py::module_& module) {
       "docs/notation.md.\n\n"
       "NaN where a number is undefined (nrmse and r2 of a joint whose measured torque never\n"
       "changes).",
-      Field{"joint", &JointError::joint}, Field{"unit", &JointError::unit, "N m or N"},
+      Field{"joint", &JointError::joint, "its name"}, Field{"unit", &JointError::unit, "N m or N"},
       number("mae", &JointError::mae, "mean absolute error"),
       number("rmse", &JointError::rmse, "root mean square error"),
       number("nrmse", &JointError::nrmse, "share of the measured range: 0.01 is 1 %"),
@@ -164,9 +164,11 @@ void bindEvaluated(py::module_& module) {
   py::class_<Evaluated>(
       module, "Evaluated",
       "A motion, its torques and errors: what read_motion() gives, and two functions fill in.")
-      .def_property_readonly("accelerations", &howOf)
-      .def_property_readonly("period", [](E e) { return e.accelerations.samples.period; })
-      .def_property_readonly("jitter", [](E e) { return e.accelerations.samples.jitter; })
+      .def_property_readonly("accelerations", &howOf, "How they were estimated.")
+      .def_property_readonly(
+          "period", [](E e) { return e.accelerations.samples.period; }, "s, between samples.")
+      .def_property_readonly(
+          "jitter", [](E e) { return e.accelerations.samples.jitter; }, "s, of the period.")
       .def_property_readonly(
           "effort", [](E e) { return e.effort; }, "`auto` until it is compared.")
       .def_property_readonly(
@@ -181,7 +183,7 @@ void bindEvaluated(py::module_& module) {
             return jointErrors(e.joint_names, units, e.errors_of_kept);
           },
           "units"_a, "Of those that were kept.")
-      .def_readonly("notes", &Evaluated::notes);
+      .def_readonly("notes", &Evaluated::notes, "What was left out or assumed, in words.");
 }
 
 // ---------------------------------------------------------------- evaluating
@@ -257,7 +259,8 @@ void bindEvaluationOptions(py::module_& module) {
           "rules not to be acted upon"),
       inherited<O>("effort", &O::effort, "what is stated of efforts"),
       inherited<O>("recording", &O::recording, "for errors' texts"),
-      inherited<O>("topic", &O::topic, "of the recording"), inherited<O>("units", &O::units),
+      inherited<O>("topic", &O::topic, "of the recording"),
+      inherited<O>("units", &O::units, "N m or N, of each joint"),
       inherited<O>("notes", &O::notes, "of reading"));
 }
 

@@ -63,6 +63,9 @@ class FastModel {
   const chain_dynamics::FastModel& fast() const { return fast_; }
   const Frames& frames() const { return frames_; }
 
+  /// Name and arguments of the function of Python that made it: pickled, it is made again.
+  py::tuple origin;
+
   template <class OfPart>
   void compute(const SolverCall& call, const OfPart& of_part) const {
     call.run([&] {
@@ -105,13 +108,18 @@ std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& 
   options.root = root;
   options.tip = tip;
   if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
-  return std::make_unique<FastModel>(
+  auto made = std::make_unique<FastModel>(
       chain_dynamics::Model(chain_dynamics::chainFromUrdf(urdf.text, options)), threads, urdf.text,
       root, locked_joints);
+  made->origin =
+      py::make_tuple("from_urdf", urdf.text, root, tip, gravity, locked_joints, threads);
+  return made;
 }
 
 std::unique_ptr<FastModel> fromFile(const std::string& path, std::int64_t threads) {
-  return std::make_unique<FastModel>(chain_dynamics::modelFromFile(path), threads);
+  auto made = std::make_unique<FastModel>(chain_dynamics::modelFromFile(path), threads);
+  made->origin = py::make_tuple("from_file", path, threads);
+  return made;
 }
 
 /// The chain with the parameters of an IdentifiedModel of identification/result.py.
@@ -146,7 +154,9 @@ std::unique_ptr<FastModel> identified(const FastModel& engine, const IdentifiedM
   }
   model.torque_deviation = Eigen::Map<const Eigen::VectorXd>(bands.data(), n);
   model.seen = std::move(ranges);
-  return std::make_unique<FastModel>(model, engine.threads());
+  auto made = std::make_unique<FastModel>(model, engine.threads());
+  made->origin = py::make_tuple("identified", py::cast(engine), found);
+  return made;
 }
 
 std::string fileText(const FastModel& of, const std::string& name, const std::string& source,
@@ -185,7 +195,30 @@ std::unique_ptr<FastModel> fromJoints(const std::vector<std::string>& names,
   }
   const chain_dynamics::Chain chain("joints", joints, linksOf(links, n),
                                     Eigen::Vector3d(gravity.data()));
-  return std::make_unique<FastModel>(chain_dynamics::Model(chain), threads);
+  auto made = std::make_unique<FastModel>(chain_dynamics::Model(chain), threads);
+  made->origin =
+      py::make_tuple("from_joints", names, prismatic, rotations, offsets, links, gravity, threads);
+  return made;
+}
+
+/// What pickle gave back of an origin.
+std::unique_ptr<FastModel> restored(const py::tuple& origin) {
+  const auto name = origin[0].cast<std::string>();
+  if (name == "from_urdf") {
+    return fromUrdf(Description{origin[1].cast<std::string>(), ""}, origin[2].cast<std::string>(),
+                    origin[3].cast<std::string>(), origin[4].cast<std::optional<Numbers3>>(),
+                    origin[5].cast<std::map<std::string, double>>(),
+                    origin[6].cast<std::int64_t>());
+  }
+  if (name == "from_file") {
+    return fromFile(origin[1].cast<std::string>(), origin[2].cast<std::int64_t>());
+  }
+  if (name == "identified") {
+    return identified(origin[1].cast<const FastModel&>(), origin[2].cast<IdentifiedModel>());
+  }
+  return fromJoints(origin[1].cast<std::vector<std::string>>(), origin[2].cast<std::vector<bool>>(),
+                    origin[3].cast<Array>(), origin[4].cast<Array>(), origin[5].cast<Array>(),
+                    origin[6].cast<Numbers3>(), origin[7].cast<std::int64_t>());
 }
 
 void bindMaking(py::class_<FastModel>& model) {
@@ -207,9 +240,24 @@ gravity : sequence of 3 floats, optional
 locked_joints : dict, optional
     Positions (rad, m) of joints that are held, by name: of the chain, which lacks them, or beside it.
 threads : int, optional
-    Among how many a large batch is shared.)")
+    Among how many a large batch is shared.
+
+Returns
+-------
+FastModel)")
       .def_static("from_file", &fromFile, "path"_a, py::kw_only(), threads = 1,
-                  "Of a model file, with its friction.")
+                  R"(Of a model file, with its friction.
+
+Parameters
+----------
+path : str
+    The file.
+threads : int, optional
+    Among how many a large batch is shared.
+
+Returns
+-------
+FastModel)")
       .def_static("from_joints", &fromJoints, "names"_a, "prismatic"_a, "rotations"_a, "offsets"_a,
                   "links"_a, py::kw_only(), gravity, threads = 1,
                   R"(Of joints about or along z of their links' frames.
@@ -224,7 +272,11 @@ links : array_like, (n, 10)
 gravity : sequence of 3 floats
     m/s^2.
 threads : int, optional
-    Among how many a large batch is shared.)");
+    Among how many a large batch is shared.
+
+Returns
+-------
+FastModel)");
 }
 
 void bindQuantities(py::class_<FastModel>& model) {
@@ -255,7 +307,8 @@ void bindQuantities(py::class_<FastModel>& model) {
           [](M m, Part p) { m.fast().tipJacobianDerivativeBatch(p.in(0), p.in(1), p.matrices(0)); })
       .add(kRegressor,
            [](M m, Part p) { m.fast().regressorBatch(p.in(0), p.in(1), p.in(2), p.matrices(0)); })
-      .addJacobian([](M m, Part p) { m.fast().tipJacobianBatch(p.in(0), p.matrices(0)); });
+      .addJacobian([](M m, Part p) { m.fast().tipJacobianBatch(p.in(0), p.matrices(0)); })
+      .addPose([](M m, Part p) { m.fast().tipPoseBatch(p.in(0), p.matrices(0), p.states(1)); });
 }
 
 }  // namespace
@@ -265,7 +318,8 @@ void bindFastModel(py::module_& module) {
       module, "FastModel",
       R"(The engine without a plugin, made by from_urdf(), from_file() or from_joints().
 
-Arrays are (n,), one state, or (N, n), one row per state. Threads: safe; the GIL is released.
+Arrays are (n,), one state, or (N, n), one row per state; (n,) among (N, n) is one state for all. Threads: safe;
+the GIL is released. Pickled, it is made again.
 
 Examples
 --------
@@ -277,9 +331,33 @@ Examples
   bindQuantities(model);
   model
       .def("identified", &identified, "found"_a,
-           "The same chain with links, rotors and friction that were identified.")
+           R"(The same chain with links, rotors and friction that were identified.
+
+Parameters
+----------
+found : IdentifiedModel
+    `model` of an Identification.
+
+Returns
+-------
+FastModel)")
       .def("file_text", &fileText, py::kw_only(), "name"_a, "source"_a, "validity"_a,
-           "The text of a model file, of which from_file() makes this model.")
+           R"(The text of a model file, of which from_file() makes this model.
+
+Parameters
+----------
+name, source, validity : str
+    What the file says about the model.
+
+Returns
+-------
+str)")
+      .def("__repr__",
+           [](const FastModel& m) {
+             return "<FastModel: " + std::to_string(m.joints().size()) + " joints, " +
+                    m.joints().front() + " to " + m.joints().back() + ">";
+           })
+      .def(py::pickle([](const FastModel& m) { return m.origin; }, &restored))
       .def_property_readonly(
           "joint_names", [](const FastModel& m) { return tupleOf(m.joints()); },
           "Names of the joints, from root to tip: the order of all arrays.")

@@ -8,6 +8,7 @@
 ///     // Effort(meaning="torque", verdict=None): frozen, with what dataclasses have
 #pragma once
 
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -40,6 +41,12 @@ struct InPython<chain_dynamics::OwnedVector> {
   using Given = Eigen::VectorXd;
   using Got = Eigen::VectorXd;
   static Got of(const chain_dynamics::OwnedVector& value) { return value; }
+};
+template <>
+struct InPython<chain_dynamics::OwnedMatrix> {
+  using Given = Eigen::MatrixXd;
+  using Got = Eigen::MatrixXd;
+  static Got of(const chain_dynamics::OwnedMatrix& value) { return value; }
 };
 template <>
 struct InPython<std::vector<std::string>> {
@@ -139,13 +146,60 @@ std::string documented(const std::string& doc, const Fields&... fields) {
   return doc.substr(0, end) + "\n\nParameters\n----------\n" + text + doc.substr(end);
 }
 
-/// Options: attributes that can be set. `meanings`: of the constructor.
+/// Whether two values of a field are the same; arrays entry by entry.
+inline bool areSame(const pybind11::handle& a, const pybind11::handle& b) {
+  if (!pybind11::isinstance<pybind11::array>(a)) return a.equal(b);
+  return pybind11::module_::import("numpy").attr("array_equal")(a, b).cast<bool>();
+}
+
+/// A value of a field as a constructor may take it, on one line.
+inline std::string shown(const pybind11::handle& value) {
+  const bool is_array = pybind11::isinstance<pybind11::array>(value);
+  return pybind11::repr(is_array ? value.attr("tolist")()
+                                 : pybind11::reinterpret_borrow<pybind11::object>(value));
+}
+
+/// Comparing, showing and pickling by fields.
+template <class T, class... Fields>
+void defineByFields(pybind11::class_<T>& of, const char* name, const Fields&... fields) {
+  namespace py = pybind11;
+  const auto dict_of = [fields...](const T& t) {
+    py::dict found;
+    ((found[fields.name] = fields.get(t)), ...);
+    return found;
+  };
+  of.def(
+        "__eq__",
+        [=](const T& a, const T& b) {
+          const py::dict others = dict_of(b);
+          for (const auto& [key, value] : dict_of(a)) {
+            if (!areSame(value, others[key])) return false;
+          }
+          return true;
+        },
+        py::is_operator())
+      .def("__repr__",
+           [=](const T& t) {
+             std::string text;
+             for (const auto& [key, value] : dict_of(t)) {
+               text += (text.empty() ? "" : ", ") + std::string(py::str(key)) + "=" + shown(value);
+             }
+             return name + ("(" + text + ")");
+           })
+      .def(py::pickle(dict_of, [](const py::dict& values) {
+        return py::type::of<T>()(**values).template cast<T>();
+      }));
+}
+
+/// Options: attributes that can be set; compared, shown and pickled by them. `meanings`: of the
+/// constructor.
 template <std::size_t Required = 1, class T, class... Gots, class... Givens>
 pybind11::class_<T> bindOptions(pybind11::module_& module, const char* name, const char* doc,
                                 const char* meanings, const Field<T, Gots, Givens>&... fields) {
   pybind11::class_<T> options(module, name, documented(doc, fields...).c_str());
   defineConstructor<Required>(options, meanings, std::index_sequence_for<Gots...>(), fields...);
   (options.def_property(fields.name, fields.get, fields.set, fields.doc), ...);
+  defineByFields(options, name, fields...);
   return options;
 }
 
@@ -158,27 +212,7 @@ pybind11::class_<T> bindRecord(pybind11::module_& module, const char* name, cons
   py::class_<T> record(module, name, documented(doc, fields...).c_str());
   defineConstructor<Required>(record, "", std::index_sequence_for<Gots...>(), fields...);
   (record.def_property_readonly(fields.name, fields.get, fields.doc), ...);
-  const auto dict_of = [fields...](const T& t) {
-    py::dict found;
-    ((found[fields.name] = fields.get(t)), ...);
-    return found;
-  };
-  record
-      .def(
-          "__eq__", [=](const T& a, const T& b) { return dict_of(a).equal(dict_of(b)); },
-          py::is_operator())
-      .def("__repr__",
-           [=](const T& t) {
-             std::string text;
-             for (const auto& [key, value] : dict_of(t)) {
-               text += (text.empty() ? "" : ", ") + std::string(py::str(key)) + "=" +
-                       std::string(py::repr(value));
-             }
-             return name + ("(" + text + ")");
-           })
-      .def(py::pickle(dict_of, [](const py::dict& values) {
-        return py::type::of<T>()(**values).template cast<T>();
-      }));
+  defineByFields(record, name, fields...);
   // Made on demand: importing dataclasses takes 9 ms.
   const py::tuple names = py::make_tuple(fields.name...);
   record.def_property_readonly_static("__dataclass_fields__", [=](const py::object&) {

@@ -3,6 +3,7 @@
 
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/robot_description.hpp>
+#include <chain_dynamics/spatial.hpp>
 #include <chain_dynamics/states.hpp>
 #include <chain_dynamics/text.hpp>
 #include <chain_dynamics/tip_kinematics.hpp>
@@ -21,14 +22,15 @@ namespace {
 namespace ids = inverse_dynamics_solver;
 using chain_dynamics::RobotDescription;
 
-[[noreturn]] void refuseFrame(const std::string& expected, const std::string& got,
-                              const std::string& remedy) {
+[[noreturn]] void refuseFrame(const std::string& method, const std::string& expected,
+                              const std::string& got, const std::string& remedy) {
   throw ids::InvalidParameterValueException(
-      ids::errorText("jacobian: argument frame", "", expected, got, remedy));
+      ids::errorText(method + ": argument frame", "", expected, got, remedy));
 }
 
 /// The link of that name, or the one that the joint of that name moves.
-std::size_t linkOf(const RobotDescription& robot, const std::string& frame) {
+std::size_t linkOf(const RobotDescription& robot, const std::string& frame,
+                   const std::string& method) {
   const std::size_t joint = robot.jointIndex(frame);
   const std::size_t link =
       joint == RobotDescription::kNone ? robot.linkIndex(frame) : robot.joints[joint].child;
@@ -38,37 +40,47 @@ std::size_t linkOf(const RobotDescription& robot, const std::string& frame) {
   for (const auto& each : robot.links) known.push_back(each.name);
   for (const auto& each : robot.joints) known.push_back(each.name);
   const std::string nearest = chain_dynamics::nearestName(frame, known);
-  refuseFrame("a link or joint of the robot description", "'" + frame + "'",
+  refuseFrame(method, "a link or joint of the robot description", "'" + frame + "'",
               nearest.empty() ? "known: " + chain_dynamics::joined(known)
                               : "did you mean '" + nearest + "'?");
 }
 
-/// The topmost link that a link is fixed to.
-std::size_t carrierOf(const RobotDescription& robot, std::size_t link) {
+/// The topmost link that a link is fixed to, and the link's pose there.
+struct Carrier {
+  std::size_t link;
+  chain_dynamics::Transform<double> pose = chain_dynamics::Transform<double>::identity();
+};
+
+Carrier carrierOf(const RobotDescription& robot, std::size_t link) {
+  Carrier carrier{link};
   for (std::size_t j = robot.links[link].parent_joint;
        j != RobotDescription::kNone && !isMovable(robot.joints[j]);
-       j = robot.links[link].parent_joint) {
-    link = robot.joints[j].parent;
+       j = robot.links[carrier.link].parent_joint) {
+    carrier = {robot.joints[j].parent, robot.joints[j].placement * carrier.pose};
   }
-  return link;
+  return carrier;
 }
 
 }  // namespace
 
-Frames::Path Frames::pathTo(const std::string& frame) const {
+Frames::Path Frames::pathTo(const std::string& frame, const std::string& method) const {
   if (urdf_.empty()) {
-    refuseFrame("a robot description that says where it is", "'" + frame + "' and no description",
+    refuseFrame(method, "a robot description that says where it is",
+                "'" + frame + "' and no description",
                 "give urdf=, or leave frame= out for the tip");
   }
   const RobotDescription robot = chain_dynamics::robotFromUrdf(urdf_);
   if (robot.jointIndex(of_.joints.front()) == RobotDescription::kNone) {
-    refuseFrame("a robot description with joint " + of_.joints.front(), "one without it",
+    refuseFrame(method, "a robot description with joint " + of_.joints.front(), "one without it",
                 "leave frame= out for the tip");
   }
-  const std::size_t link = linkOf(robot, frame);
+  const std::size_t link = linkOf(robot, frame, method);
   const std::size_t root = of_.root.empty() ? robot.root : robot.linkIndex(of_.root);
   Path path;
-  if (root == RobotDescription::kNone || carrierOf(robot, link) == carrierOf(robot, root)) {
+  if (root == RobotDescription::kNone) return path;
+  const Carrier of_link = carrierOf(robot, link), of_root = carrierOf(robot, root);
+  if (of_link.link == of_root.link) {
+    path.fixed = of_root.pose.inverse() * of_link.pose;
     return path;
   }
   chain_dynamics::UrdfOptions options;
@@ -89,10 +101,11 @@ Frames::Path Frames::pathTo(const std::string& frame) const {
   return path;
 }
 
-const Frames::Path& Frames::to(const std::string& frame) const {
+const Frames::Path& Frames::to(const std::string& frame, const std::string& method) const {
   const std::lock_guard<std::mutex> alone(busy_);
   const auto found = paths_.find(frame);
-  return found != paths_.end() ? found->second : paths_.emplace(frame, pathTo(frame)).first->second;
+  if (found != paths_.end()) return found->second;
+  return paths_.emplace(frame, pathTo(frame, method)).first->second;
 }
 
 void Frames::Path::jacobians(const chain_dynamics::ConstStates& states,
@@ -104,6 +117,20 @@ void Frames::Path::jacobians(const chain_dynamics::ConstStates& states,
     if (chain) chain_dynamics::tipJacobian(*chain, of_path, J_path);
     for (Eigen::Index j = 0; j < states.joints; ++j) {
       for (Eigen::Index i = 0; i < 6; ++i) J(i, j, k) = j < shared ? J_path(i, j) : 0.0;
+    }
+  }
+}
+
+void Frames::Path::poses(const chain_dynamics::ConstStates& states,
+                         const chain_dynamics::StridedMatrices& R,
+                         const chain_dynamics::States& p) const {
+  Eigen::VectorXd of_path = q;
+  for (Eigen::Index k = 0; k < states.count; ++k) {
+    for (Eigen::Index j = 0; j < shared; ++j) of_path[j] = states(j, k);
+    const auto pose = chain ? chain_dynamics::tipPose(*chain, of_path) : fixed;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index j = 0; j < 3; ++j) R(i, j, k) = pose.R(i, j);
+      p(i, k) = pose.p[i];
     }
   }
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Jacobians of any link or joint of a robot description, not only of the chain's tip.
+/// Jacobians and poses of any link or joint of a robot description, not only of the chain's tip.
 ///
 ///     const Frames frames(urdf, {"base_link", {"shoulder", "elbow"}, {{"finger", 0.02}}});
-///     frames.to("forearm").jacobians(q, J);
+///     frames.to("forearm", "jacobian").jacobians(q, J);
 #pragma once
 
 #include <Eigen/Core>
 #include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/spatial.hpp>
 #include <chain_dynamics/states.hpp>
 #include <map>
 #include <memory>
@@ -31,6 +32,8 @@ class Frames {
   /// The chain from the root to a frame: joints of ours, then others, which are held.
   struct Path {
     std::unique_ptr<const chain_dynamics::Chain> chain;  // null: nothing moves
+    chain_dynamics::Transform<double> fixed =
+        chain_dynamics::Transform<double>::identity();  // then
     Eigen::Index shared = 0;
     Eigen::VectorXd q;
 
@@ -38,18 +41,22 @@ class Frames {
     /// of the root frame.
     void jacobians(const chain_dynamics::ConstStates& states,
                    const chain_dynamics::StridedMatrices& J) const;
+
+    /// Pose of the frame in the root frame at each state: R 3 x 3, and p.
+    void poses(const chain_dynamics::ConstStates& states, const chain_dynamics::StridedMatrices& R,
+               const chain_dynamics::States& p) const;
   };
 
   /// @param urdf  empty: there are no frames.
   Frames(std::string urdf, FramesOf of) : urdf_(std::move(urdf)), of_(std::move(of)) {}
 
-  /// A joint's frame is that of its child link.
+  /// A joint's frame is that of its child link. method: of Python, for errors.
   ///
   /// @throws InvalidParameterValueException  no description, no such link or joint.
-  const Path& to(const std::string& frame) const;
+  const Path& to(const std::string& frame, const std::string& method) const;
 
  private:
-  Path pathTo(const std::string& frame) const;
+  Path pathTo(const std::string& frame, const std::string& method) const;
 
   const std::string urdf_;
   const FramesOf of_;

@@ -201,15 +201,14 @@ void bindFit(py::module_& module) {
 void bindIdentification(py::module_& module) {
   bindFit(module);
   using O = ArmFitOptions;
-  bindOptions(
-      module, "ArmFitOptions", "How to fit.",
-      "law: step, load, stribeck; most_passes: over the samples; without: number of a block that "
-      "is left out; shift: whether the step may be off zero velocity; drive_gains: (n,) N m/A, "
-      "about: tau are currents [A], and the gains are "
-      "fitted.",
-      Field{"law", &O::terms}, Field{"prior_strength", &O::prior_strength},
-      Field{"most_passes", &O::most_passes}, Field{"without", &O::without},
-      Field{"shift", &O::shift}, Field{"drive_gains", &O::drive_gains});
+  bindOptions(module, "ArmFitOptions", "How to fit.", "",
+              Field{"law", &O::terms, "of friction: step, load, stribeck"},
+              Field{"prior_strength", &O::prior_strength, "of the description's links"},
+              Field{"most_passes", &O::most_passes, "over the samples"},
+              Field{"without", &O::without, "number of a block that is left out"},
+              Field{"shift", &O::shift, "whether the step of friction may be off zero velocity"},
+              Field{"drive_gains", &O::drive_gains,
+                    "(n,) N m/A, about: tau are currents [A], and the gains are fitted"});
   py::class_<HeldData>(module, "ArmData", "Blocks of samples for any number of fits.")
       .def("__len__", [](const HeldData& held) { return held.arrays.size(); });
   py::class_<ArmFitter>(module, "ArmFitter",

@@ -174,9 +174,33 @@ void bindArm(py::module_& module) {
            "friction: smooth_coulomb of each of n joints, by the keys of the model file; "
            "factor: (m, K), the covariance of the m unknowns is factor factor'.")
       .def("torques", &armTorques, "solver"_a, "z"_a, "motion"_a,
-           "Of deviations z (K,) at q, qd, qdd, (N, n) each: (N, n) N m.")
+           R"(Torques by which an arm differs from its model.
+
+Parameters
+----------
+solver : Solver
+z : array_like, (K,)
+    Deviations of the arm, in standard deviations.
+motion : tuple of three array_like, (N, n) each
+    q, qd, qdd: rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).
+
+Returns
+-------
+ndarray, (N, n)
+    N m (prismatic N).)")
       .def("variances", &armVariances, "solver"_a, "motion"_a,
-           "Of the torques at q, qd, qdd, (N, n) each: (N, n) N^2 m^2.");
+           R"(Variances of the torques by which an arm may differ from its model.
+
+Parameters
+----------
+solver : Solver
+motion : tuple of three array_like, (N, n) each
+    q, qd, qdd: rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).
+
+Returns
+-------
+ndarray, (N, n)
+    N^2 m^2 (prismatic N^2).)");
 }
 
 void bindEstimate(py::module_& module) {
@@ -190,23 +214,21 @@ void bindEstimate(py::module_& module) {
       .def_property_readonly(
           "text", [](PayloadStatus status) { return text(status); }, "What happened, in words.");
   using E = PayloadEstimate;
-  py::class_<E>(module, "PayloadEstimate",
-                "A body in the tip frame, with the half widths of its 95 % intervals.")
-      .def_readonly("mass", &E::mass, "kg.")
-      .def_readonly("mass_half_width", &E::mass_half_width, "kg.")
-      .def_readonly("center_of_mass", &E::center_of_mass, "(3,) m.")
-      .def_readonly("center_of_mass_half_width", &E::center_of_mass_half_width, "(3,) m.")
-      .def_readonly("inertia", &E::inertia, "(3, 3) about the center of mass, kg m^2.")
-      .def_readonly("inertia_half_width", &E::inertia_half_width,
-                    "(3, 3) kg m^2, of what the data alone tell.")
-      .def_readonly("inertia_is_known", &E::inertia_is_known, "Whether the data tell the inertia.")
-      .def_readonly("offset", &E::offset, "(n,) N m.")
-      .def_readonly("arm", &E::arm,
-                    "(K,) deviations of the arm from its model, in standard deviations.")
-      .def_readonly("covariance", &E::covariance,
-                    "(10, 10) of m, mc, I about the origin of the tip frame.")
-      .def_readonly("blocks", &E::blocks, "Of time, that the intervals rest on.")
-      .def_readonly("duration", &E::duration, "s, from the first sample to the last.");
+  bindRecord(
+      module, "PayloadEstimate",
+      "A body in the tip frame, with the half widths of its 95 % intervals.",
+      Field{"mass", &E::mass, "kg"}, Field{"mass_half_width", &E::mass_half_width, "kg"},
+      Field{"center_of_mass", &E::center_of_mass, "(3,) m"},
+      Field{"center_of_mass_half_width", &E::center_of_mass_half_width, "(3,) m"},
+      Field{"inertia", &E::inertia, "(3, 3) about the center of mass, kg m^2"},
+      Field{"inertia_half_width", &E::inertia_half_width,
+            "(3, 3) kg m^2, of what the data alone tell"},
+      Field{"inertia_is_known", &E::inertia_is_known, "whether the data tell the inertia"},
+      Field{"offset", &E::offset, "(n,) N m (prismatic N)"},
+      Field{"arm", &E::arm, "(K,) deviations of the arm from its model, in standard deviations"},
+      Field{"covariance", &E::covariance, "(10, 10) of m, mc, I about the origin of the tip frame"},
+      Field{"blocks", &E::blocks, "of time, that the intervals rest on"},
+      Field{"duration", &E::duration, "s, from the first sample to the last"});
 }
 
 }  // namespace
@@ -217,25 +239,57 @@ void bindPayload(py::module_& module) {
   bindEstimate(module);
   using O = PayloadOptions;
   bindOptions(
-      module, "PayloadOptions", "What the estimate rests on.",
-      "offset, offset_deviation: (n,) N m, what is known of the offsets; arm: what its model "
-      "may be wrong by; carried: the body among solver.payloads that belongs to the estimate; "
-      "extent: m; block: s; model_error: variance of what the arm's model is wrong by, in "
-      "units of what the noise gives.",
-      Field{"noise", &O::noise}, Field{"offset", &O::offset},
-      Field{"offset_deviation", &O::offset_deviation}, Field{"arm", &O::arm},
-      Field{"carried", &O::carried}, Field{"extent", &O::extent}, Field{"block", &O::block},
-      Field{"model_error", &O::model_error});
+      module, "PayloadOptions", "What the estimate rests on.", "",
+      Field{"noise", &O::noise, "of the torques"},
+      Field{"offset", &O::offset, "(n,) N m, what is known of the offsets"},
+      Field{"offset_deviation", &O::offset_deviation, "(n,) N m, of the offsets"},
+      Field{"arm", &O::arm, "what the arm's model may be wrong by"},
+      Field{"carried", &O::carried, "body among solver.payloads that belongs to the estimate"},
+      Field{"extent", &O::extent, "m"}, Field{"block", &O::block, "s"},
+      Field{"model_error", &O::model_error,
+            "variance of what the arm's model is wrong by, in units of what the noise gives"});
   py::class_<SharedEstimator>(module, "PayloadEstimator",
                               "Mass, center of mass and inertia of what the tip carries. Threads: "
                               "safe; the GIL is released, and each call waits for those of other "
                               "threads.")
       .def(ofSolver<SharedEstimator, PayloadOptions>(), "solver"_a, "options"_a)
       .def("update", &update, "time"_a, "state"_a, "measured"_a,
-           "Adds a sample: s; q, qd, qdd and torques, (n,) each; PayloadStatus.")
+           R"(Adds a sample.
+
+Parameters
+----------
+time : float
+    s, later than that of the sample before.
+state : tuple of three array_like, (n,) each
+    q, qd, qdd: rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).
+measured : array_like, (n,)
+    Torques, N m (prismatic N).
+
+Returns
+-------
+PayloadStatus)")
       .def("run", &run, "time"_a, "motion"_a, "measured"_a,
-           "Adds N samples, as update() does, (N,) and (N, n); how many were added.")
-      .def("estimate", &estimate, "(PayloadEstimate, PayloadStatus).")
+           R"(Adds N samples, as update() does.
+
+Parameters
+----------
+time : array_like, (N,)
+    s.
+motion : tuple of three array_like, (N, n) each
+    q, qd, qdd: rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).
+measured : array_like, (N, n)
+    Torques, N m (prismatic N).
+
+Returns
+-------
+int
+    How many samples were added.)")
+      .def("estimate", &estimate, R"(The body that explains the samples best.
+
+Returns
+-------
+tuple of PayloadEstimate and PayloadStatus
+    kg, m, kg m^2, in the tip frame; meaningless unless the status is OK.)")
       .def("restart", &restart, "Forgets all samples.");
 }
 

@@ -91,14 +91,15 @@ class Quantities {
 
   /// `jacobian(q, frame="", *, out=None)`; of_tip: that of an empty frame.
   template <class Compute>
-  void addJacobian(Compute of_tip) {
+  Quantities& addJacobian(Compute of_tip) {
     namespace py = pybind11;
     const auto computed = [of_tip](const Class& self, const ArrayLike& q, const std::string& frame,
                                    const MaybeFloats& out) -> Floats {
       SolverCall call("jacobian", self.joints());
       call.input("q", q);
       call.result("out", out, kJacobian(static_cast<py::ssize_t>(self.joints().size())));
-      const Frames::Path* const path = frame.empty() ? nullptr : &self.frames().to(frame);
+      const Frames::Path* const path =
+          frame.empty() ? nullptr : &self.frames().to(frame, "jacobian");
       self.compute(call, [&](const PartOfCall& part) {
         if (path == nullptr) return of_tip(self, part);
         path->jacobians(part.in(0), part.matrices(0));
@@ -112,6 +113,31 @@ class Quantities {
     const std::string doc = documented(text, {"q", "link", "out"}, Class::kExample);
     class_.def("jacobian", computed, py::arg("q"), py::arg("frame") = "", py::kw_only(),
                py::arg("out") = py::none(), doc.c_str());
+    return *this;
+  }
+
+  /// `pose(q, frame="")`; of_tip: that of an empty frame.
+  template <class Compute>
+  void addPose(Compute of_tip) {
+    namespace py = pybind11;
+    const auto computed = [of_tip](const Class& self, const ArrayLike& q,
+                                   const std::string& frame) -> TwoFloats {
+      SolverCall call("pose", self.joints());
+      call.input("q", q);
+      call.result("R", py::none(), {3, 3});
+      call.result("p", py::none(), {3});
+      const Frames::Path* const path = frame.empty() ? nullptr : &self.frames().to(frame, "pose");
+      self.compute(call, [&](const PartOfCall& part) {
+        if (path == nullptr) return of_tip(self, part);
+        path->poses(part.in(0), part.matrices(0), part.states(1));
+      });
+      return {call.array(0), call.array(1)};
+    };
+    const ResultText text{"Pose of a frame in the root frame: rotation R and position p [m].",
+                          "(3, 3) and (3,), or (N, 3, 3) and (N, 3)",
+                          "R, p = arm.pose(q, frame=\"wrist_1_link\")\np.shape\n(100, 3)"};
+    const std::string doc = documented(text, {"q", "link"}, Class::kExample);
+    class_.def("pose", computed, py::arg("q"), py::arg("frame") = "", doc.c_str());
   }
 
  private:

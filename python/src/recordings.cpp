@@ -257,24 +257,29 @@ void bindRecording(py::module_& module) {
              return std::make_unique<Recording>(path.bytes);
            }),
            "path"_a)
-      .def_property_readonly("storage",
-                             [](const Recording& recording) -> StorageName {
-                               return py::str(recordings::name(recording.storage()));
-                             })
-      .def("topics",
-           [](const Recording& recording) {
-             std::vector<std::tuple<py::str, py::str, std::int64_t>> topics;
-             for (const auto& topic : recording.topics()) {
-               topics.emplace_back(textOf(topic.name), textOf(topic.type), topic.messages);
-             }
-             return topics;
-           })
+      .def_property_readonly(
+          "storage",
+          [](const Recording& recording) -> StorageName {
+            return py::str(recordings::name(recording.storage()));
+          },
+          "sqlite3 or mcap.")
+      .def(
+          "topics",
+          [](const Recording& recording) {
+            std::vector<std::tuple<py::str, py::str, std::int64_t>> topics;
+            for (const auto& topic : recording.topics()) {
+              topics.emplace_back(textOf(topic.name), textOf(topic.type), topic.messages);
+            }
+            return topics;
+          },
+          "Name, type and number of messages of each.")
       .def(
           "topic_of_type",
           [](const Recording& recording, const std::string& type, const PathText& topic) {
             return textOf(recording.topicOfType(type, topic.bytes));
           },
-          "message_type"_a, "topic"_a = "")
+          "message_type"_a, "topic"_a = "",
+          "The topic, which has this type; none named: the only one.")
       .def(
           "topics_with_joints",
           [](const Recording& recording, const PathText& usual,
@@ -290,21 +295,23 @@ void bindRecording(py::module_& module) {
           [](const Recording& recording, const PathText& topic) {
             return recording.expectedMessages(topic.bytes);
           },
-          "topic"_a)
+          "topic"_a, "How many messages the metadata states.")
       .def(
           "messages",
           [](const Recording& recording, const PathText& topic) {
             return Messages{recording.messages(topic.bytes)};
           },
-          "topic"_a)
-      .def("all_messages",
-           [](const Recording& recording) { return Messages{recording.allMessages()}; })
+          "topic"_a, "Messages of a topic, serialized.")
+      .def(
+          "all_messages",
+          [](const Recording& recording) { return Messages{recording.allMessages()}; },
+          "Messages of all topics, serialized.")
       .def(
           "joint_states",
           [](const Recording& recording, const PathText& topic) {
             return JointStates{recording.jointStates(topic.bytes)};
           },
-          "topic"_a = "")
+          "topic"_a = "", "Joint states of a topic; none named: of the only one.")
       .def("read_samples", &readSamples, "topic"_a, "joints"_a, "clock"_a, "progress"_a,
            "Joint states as a table. progress: called with the share that is read.");
 }
@@ -313,11 +320,13 @@ void bindSampleTable(py::module_& module) {
   py::class_<SampleTable, std::shared_ptr<SampleTable>>(
       module, "SampleTable", "Samples of a recording: SampleTable of inverse_dynamics_evaluation.")
       .def_readonly("joint_names", &SampleTable::joint_names, "Those of the recording.")
-      .def_readonly("frame_id", &SampleTable::frame_id)
-      .def_property_readonly("clock",
-                             [](const SampleTable& table) -> ClockName {
-                               return py::str(recordings::name(table.clock()));
-                             })
+      .def_readonly("frame_id", &SampleTable::frame_id, "Of the first message.")
+      .def_property_readonly(
+          "clock",
+          [](const SampleTable& table) -> ClockName {
+            return py::str(recordings::name(table.clock()));
+          },
+          "header or receive: which stamps are the time.")
       .def_readonly("notes", &SampleTable::notes, "What was left out or assumed in reading.")
       .def_property_readonly("series", &seriesOf,
                              "Arrays of all samples by name, as series.npz has them: views.");
@@ -343,10 +352,10 @@ void bindRecordings(py::module_& module) {
              return std::make_unique<Writer>(path.bytes, storageOf(storage), topics);
            }),
            "path"_a, "storage"_a, "topics"_a)
-      .def("write", &write, "rows"_a)
+      .def("write", &write, "rows"_a, "Writes rows of each topic.")
       .def(
           "finish", [](Writer& writer) { writer.writer.finish(); },
-          py::call_guard<py::gil_scoped_release>());
+          py::call_guard<py::gil_scoped_release>(), "Ends the recording, which is whole then.");
   module.def(
       "write_torques", &writeTorques, "path"_a, "storage"_a, "topic"_a, "computed"_a, "measured"_a,
       py::kw_only(), "progress"_a,

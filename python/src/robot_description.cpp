@@ -160,7 +160,7 @@ void bindRobotDescription(py::module_& module) {
   using Joint = DescribedJoint;
   py::class_<Joint>(module, "DescribedJoint",
                     "A joint of a URDF: its frame in that of the link above, its axis in its own.")
-      .def_readonly("name", &Joint::name)
+      .def_readonly("name", &Joint::name, "in the description")
       .def_property_readonly("type", &typeOf,
                              "fixed, revolute, continuous, prismatic, planar or floating")
       .def_readonly("parent", &Joint::parent_link, "the link above")
@@ -194,18 +194,21 @@ void bindRobotDescription(py::module_& module) {
   py::class_<RobotDescription>(module, "RobotDescription",
                                "The links and joints of a URDF, in the order of its text.")
       .def(py::init(&descriptionOf), "urdf"_a, "urdf: its text. Raises RobotError.")
-      .def_readonly("name", &RobotDescription::name)
+      .def_readonly("name", &RobotDescription::name, "of the robot")
       .def_property_readonly(
-          "root", [](const RobotDescription& robot) { return robot.links[robot.root].name; })
-      .def_property_readonly("joints",
-                             [](const RobotDescription& robot) {
-                               std::vector<Joint> joints;
-                               joints.reserve(robot.joints.size());
-                               for (const auto& joint : robot.joints) {
-                                 joints.push_back(described(robot, joint));
-                               }
-                               return joints;
-                             })
+          "root", [](const RobotDescription& robot) { return robot.links[robot.root].name; },
+          "the link above all others")
+      .def_property_readonly(
+          "joints",
+          [](const RobotDescription& robot) {
+            std::vector<Joint> joints;
+            joints.reserve(robot.joints.size());
+            for (const auto& joint : robot.joints) {
+              joints.push_back(described(robot, joint));
+            }
+            return joints;
+          },
+          "all, in the order of the text")
       .def(
           "chain", &chainOf, "joints"_a, "root"_a = "",
           "The joints of these names, each placed in the child of the one before, the first in the "

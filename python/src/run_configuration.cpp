@@ -52,7 +52,8 @@ Examples
 >>> robot = replace(load_robot("ur10_simulated"), gravity=(0.0, 0.0, -1.62))
 >>> robot.solver()
 <Solver kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL: 6 joints, shoulder_pan_joint to wrist_3_joint>)",
-      Field{"name", &Robot::name}, Field{"description", &Robot::description, "one line"},
+      Field{"name", &Robot::name, "of one word"},
+      Field{"description", &Robot::description, "one line"},
       pathField<FilePath>("file", &Robot::file, "where it is from"),
       Field{"plugin", &Robot::plugin, "package/Class of the solver"},
       pathField("urdf", &Robot::urdf, "the path of a description"),
@@ -89,7 +90,7 @@ Examples
           [](const py::object& robot) -> SolverObject {
             return py::module_::import("inverse_dynamics._core").attr("Solver")(robot);
           },
-          "The solver that the run configuration names: Solver(robot).");
+          "The solver that the run configuration names.\n\nReturns\n-------\nSolver");
 }
 
 /// The robot with the changes that aren't None.
@@ -126,6 +127,10 @@ void bindRunConfiguration(py::module_& module) {
   module.def("robot_names", &evaluation::robotNames,
              R"(Names of the robots that the sourced workspaces bring.
 
+Returns
+-------
+list of str
+
 Examples
 --------
 >>> from inverse_dynamics import robot_names
@@ -144,6 +149,10 @@ Parameters
 name_or_file : str or path
     One of robot_names(); what ends in .yaml or .yml, or has a directory, is a file. One that ends
     in .urdf: robot_of_description().
+
+Returns
+-------
+Robot
 
 Raises
 ------

@@ -4,6 +4,7 @@
 #include <array>
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/model.hpp>
+#include <chain_dynamics/model_file.hpp>
 #include <cstddef>
 #include <filesystem>
 #include <inverse_dynamics_evaluation/run_configuration.hpp>
@@ -24,6 +25,8 @@
 #include <inverse_dynamics_solver/torque_derivatives.hpp>
 #include <inverse_dynamics_solver/torque_deviation.hpp>
 #include <inverse_dynamics_solver/variable_gravity.hpp>
+#include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,6 +53,7 @@ using SolverName = std::variant<Robot, PathText>;
 struct Origin {
   std::string plugin, urdf;
   ParameterValues parameters;
+  Robot robot;  // that has these arguments
 };
 
 /// Names of the installed solvers for which `has` is true.
@@ -301,8 +305,10 @@ void bindQuantities(py::class_<Solver>& solver) {
              s.as<ids::ForwardDynamics>(p).getAccelerationsBatch(p.in(0), p.in(1), p.in(2),
                                                                  p.states(0));
            })
-      .addJacobian([](S s, Part p) {
-        s.as<ids::Kinematics>(p).getTipJacobianBatch(p.in(0), p.matrices(0));
+      .addJacobian(
+          [](S s, Part p) { s.as<ids::Kinematics>(p).getTipJacobianBatch(p.in(0), p.matrices(0)); })
+      .addPose([](S s, Part p) {
+        s.as<ids::Kinematics>(p).getTipPoseBatch(p.in(0), p.matrices(0), p.states(1));
       });
 }
 
@@ -387,8 +393,86 @@ MaybeFloats seenRanges(const Solver& solver) {
   return py::object(std::move(result));  // GCC 14 calls a plain move redundant, others need one
 }
 
+/// A text among the parameters; empty: none.
+std::string textParameter(const Solver& solver, const std::string& name) {
+  const auto& parameters = solver.origin().parameters;
+  const auto found = parameters.find(name);
+  const auto* const text =
+      found == parameters.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return text == nullptr ? "" : *text;
+}
+
+/// Of the description, a RobotDescription of Python.
+py::object describedBy(const Solver& solver) {
+  return py::module_::import("inverse_dynamics._core")
+      .attr("RobotDescription")(solver.origin().urdf);
+}
+
+std::string rootOf(const Solver& solver) {
+  const std::string stated = textParameter(solver, "root");
+  if (!stated.empty() || solver.origin().urdf.empty()) return stated;
+  return describedBy(solver).attr("root").cast<std::string>();
+}
+
+std::string tipOf(const Solver& solver) {
+  const std::string stated = textParameter(solver, "tip");
+  if (!stated.empty() || solver.origin().urdf.empty()) return stated;
+  return describedBy(solver).attr("tip")(solver.joints().back()).cast<std::string>();
+}
+
+/// (n,) each, by name; infinite where none is stated.
+ParameterDict limitsOf(const Solver& solver) {
+  py::list stated;
+  const std::string model = textParameter(solver, "model");
+  if (!solver.origin().urdf.empty()) {
+    const py::object chain =
+        describedBy(solver).attr("chain")(tupleOf(solver.joints()), textParameter(solver, "root"));
+    for (const auto& joint : chain) stated.append(joint.attr("limits"));
+  } else if (std::filesystem::is_regular_file(model)) {
+    const chain_dynamics::Model read = chain_dynamics::modelFromFile(model);
+    for (const auto& joint : read.chain.joints()) {
+      const auto& limits = joint.limits;
+      stated.append(py::dict("lower"_a = limits.lower, "upper"_a = limits.upper,
+                             "velocity"_a = limits.velocity, "effort"_a = limits.effort));
+    }
+  }
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const auto n = static_cast<Eigen::Index>(solver.joints().size());
+  std::map<std::string, Eigen::VectorXd> found;
+  for (const char* const name : {"lower", "upper", "velocity", "effort"}) {
+    found[name].setConstant(n, name == std::string("lower") ? -kNone : kNone);
+  }
+  for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(stated.size()); ++j) {
+    for (const auto& [name, value] : py::dict(stated[static_cast<std::size_t>(j)])) {
+      const auto [of, is_new] = found.try_emplace(name.cast<std::string>());
+      if (is_new) of->second.setConstant(n, kNone);
+      of->second[j] = value.cast<double>();
+    }
+  }
+  py::dict limits;
+  for (const auto& [name, values] : found) limits[name.c_str()] = arrayOf(values);
+  return ParameterDict(limits);
+}
+
 void bindProperties(py::class_<Solver>& solver) {
-  solver.def_property_readonly("plugin", [](const Solver& s) { return s.origin().plugin; })
+  solver
+      .def_property_readonly(
+          "plugin", [](const Solver& s) { return s.origin().plugin; }, "package/Class.")
+      .def_property_readonly(
+          "robot", [](const Solver& s) { return s.origin().robot; },
+          "The run configuration that the solver was made of, with all arguments.")
+      .def_property_readonly(
+          "urdf", [](const Solver& s) { return s.origin().urdf; },
+          "Text of the robot description; empty: none was given.")
+      .def_property_readonly("root", &rootOf,
+                             "Link that the chain begins at; empty: no description says it.")
+      .def_property_readonly("tip", &tipOf,
+                             "Link that the chain ends at; empty: no description says it.")
+      .def_property_readonly(
+          "limits", &limitsOf,
+          "Of the joints, by name, (n,) each: lower, upper (rad, m), velocity\n"
+          "(rad/s, m/s), effort (N m, N) and what else the description or the model\n"
+          "file states. Infinite where nothing is stated.")
       .def_property_readonly(
           "joint_names", [](const Solver& s) { return tupleOf(s.joints()); },
           "Names of the joints, from root to tip: the order of all arrays.")
@@ -496,7 +580,17 @@ Examples
             auto& payload = s.as<ids::Payload>("remove_payload");
             return unlocked([&] { return payload.removePayload(name); });
           },
-          "name"_a, "Takes a body away; False if there is none of that name.")
+          "name"_a, R"(Takes a body away.
+
+Parameters
+----------
+name : str
+    As set_payload() had it.
+
+Returns
+-------
+bool
+    False if there is none of that name.)")
       .def(
           "clear_payloads",
           [](const Solver& s) {
@@ -507,10 +601,24 @@ Examples
       .def_property_readonly("payloads", &payloads,
                              "The bodies: name to the arguments of set_payload().")
       .def("set_gravity", &setGravity, "gravity"_a,
-           "Sets the gravitational acceleration: (3,) m/s^2, in the axes of the root link.\n"
-           "A UserWarning where it is implausible: 981, for one.")
+           R"(Sets the gravitational acceleration.
+
+Parameters
+----------
+gravity : array_like, (3,)
+    m/s^2, in the axes of the root link.
+
+Warns
+-----
+UserWarning
+    An implausible one: 981, for one.)")
       .def("set_base_acceleration", &setBaseAcceleration, "acceleration"_a,
-           "How the root link accelerates, (3,) m/s^2 in its axes. Not for a base that rotates.")
+           R"(Sets how the root link accelerates. Not for a base that rotates.
+
+Parameters
+----------
+acceleration : array_like, (3,)
+    m/s^2, in the axes of the root link.)")
       .def_property_readonly("gravity", &gravity, "(3,) m/s^2.")
       .def_property_readonly("base_acceleration", &baseAcceleration, "(3,) m/s^2.");
 }
@@ -526,6 +634,8 @@ Robot robotOf(const SolverName& named, bool described) {
   if (const auto* const robot = std::get_if<Robot>(&named)) return *robot;
   const std::string& text = std::get<PathText>(named).bytes;
   Robot robot;
+  robot.name = "robot";
+  robot.effort = inverse_dynamics_evaluation::kAutomatic;
   robot.plugin = text.empty() && described ? kUsualPlugin : text;
   if (robot.plugin.empty()) {
     throw ids::InvalidParameterValueException(
@@ -543,16 +653,38 @@ Robot robotOf(const SolverName& named, bool described) {
   return inverse_dynamics_evaluation::readRunConfiguration(text);
 }
 
+/// The robot with parameters of a solver in the fields that it has for them.
+Robot stating(Robot robot, const ParameterValues& parameters) {
+  robot.parameters.clear();
+  for (const auto& [name, value] : parameters) {
+    const auto* const text = std::get_if<std::string>(&value);
+    const auto* const truth = std::get_if<bool>(&value);
+    const auto* const numbers = std::get_if<std::vector<double>>(&value);
+    if (name == "friction" && truth) {
+      robot.friction = *truth;
+    } else if (name == "gravity" && numbers && numbers->size() == 3) {
+      robot.gravity = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+    } else if (text && (name == "root" || name == "tip" || name == "model")) {
+      (name == "root" ? robot.root : name == "tip" ? robot.tip : robot.model) = *text;
+    } else {
+      robot.parameters[name] = value;
+    }
+  }
+  return robot;
+}
+
 std::unique_ptr<Solver> makeSolver(const SolverName& named, const Description& urdf,
                                    const std::string& root, const std::string& tip,
                                    const std::optional<std::array<double, 3>>& gravity,
                                    const std::optional<bool>& friction, const std::string& attached,
                                    const std::optional<std::string>& model,
                                    const ParameterDict& parameters) {
-  const Robot robot = robotOf(named, !urdf.text.empty());
+  Robot robot = robotOf(named, !urdf.text.empty());
   const bool described = urdf.text.empty() && !robot.urdf.empty();
-  Origin origin{robot.plugin, described ? readDescription(textOf(robot.urdf)) : urdf.text,
-                parametersOf(parameters)};
+  Origin origin{robot.plugin,
+                described ? readDescription(textOf(robot.urdf)) : urdf.text,
+                parametersOf(parameters),
+                {}};
   const auto give = [&](const std::string& name, const ids::ParameterValue& value) {
     if (origin.parameters.emplace(name, value).second) return;
     throw ids::InvalidParameterValueException(
@@ -566,9 +698,10 @@ std::unique_ptr<Solver> makeSolver(const SolverName& named, const Description& u
   if (model) give("model", *model);
   if (gravity) give("gravity", std::vector<double>(gravity->begin(), gravity->end()));
   // what the robot states and no argument replaces
-  auto own = inverse_dynamics_evaluation::solverParameters(robot);
-  if (!urdf.text.empty()) own.erase("model");
+  if (!urdf.text.empty()) replaceDescription(robot, urdf.path);
+  const auto own = inverse_dynamics_evaluation::solverParameters(robot);
   origin.parameters.insert(own.begin(), own.end());
+  origin.robot = stating(std::move(robot), origin.parameters);
   return std::make_unique<Solver>(std::move(origin));
 }
 
@@ -581,13 +714,14 @@ py::tuple stateOf(const Solver& solver) {
     since["base_acceleration"] = baseAcceleration(solver);
   }
   const Origin& origin = solver.origin();
-  return py::make_tuple(origin.plugin, origin.urdf, dictOf(origin.parameters), since);
+  return py::make_tuple(origin.plugin, origin.urdf, dictOf(origin.parameters), origin.robot, since);
 }
 
 std::unique_ptr<Solver> restored(const py::tuple& state) {
-  auto solver = std::make_unique<Solver>(
-      Origin{state[0].cast<std::string>(), state[1].cast<std::string>(), parametersOf(state[2])});
-  const py::dict since = state[3];
+  auto solver =
+      std::make_unique<Solver>(Origin{state[0].cast<std::string>(), state[1].cast<std::string>(),
+                                      parametersOf(state[2]), state[3].cast<Robot>()});
+  const py::dict since = state[4];
   if (since.empty()) return solver;
   auto& payload = solver->as<ids::Payload>("payloads");
   payload.clearPayloads();
@@ -638,7 +772,8 @@ True)");
                             R"(An inverse dynamics solver, made by name and ready to compute.
 
 Arrays are (n,), one state, or (N, n), one state per row, joints in the order of joint_names; results have
-the same shape. Any layout, without copies. Threads: safe; the GIL is released. Pickled, it is made again.
+the same shape. (n,) among (N, n) is one state for all. Columns of a DataFrame that are named like the joints are
+taken by name. Any layout, without copies. Threads: safe; the GIL is released. Pickled, it is made again.
 
 Parameters
 ----------

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "annotations.hpp"
 #include "arrays.hpp"
 
 namespace inverse_dynamics_tools {
@@ -103,14 +104,26 @@ void SolverCall::requireShape(const char* name, const py::array& array) const {
         place(name), "wrong shape", "(" + n + ",) or (N, " + n + "), one state per row",
         shapeText(shape), remedy));
   }
-  if (!inputs_.empty() && shape != shape_) {
-    throw ids::SizeMismatchException(
-        ids::errorText(place(name), "wrong shape",
-                       shapeText(shape_) + ", that of " + inputs_[0].name, shapeText(shape)));
+  if (shape.size() == 2 && shape_.size() == 2 && shape != shape_) {
+    throw ids::SizeMismatchException(ids::errorText(
+        place(name), "wrong shape",
+        shapeText(shape_) + ", that of " + shaped_ + ", or (" + n + ",), one state for all",
+        shapeText(shape)));
   }
 }
 
+py::object SolverCall::byJoint(const char* name, const py::object& values) const {
+  const bool is_table = !isPlainArray(values) &&  // of pandas or polars
+                        (py::hasattr(values, "iloc") || py::hasattr(values, "get_columns"));
+  if (!is_table) return values;
+  return py::module_::import("inverse_dynamics.arrays")
+      .attr("by_joint")(values, tupleOf(joint_names_), place(name));
+}
+
 py::array SolverCall::numbersFrom(const char* name, const py::object& values) const {
+  if (isMasked(values)) {
+    refuse(name, "a number in each place", "an array with masked ones");
+  }
   py::array array = py::array::ensure(values);
   if (!array) refuse(name, "an array of real numbers", typeName(values));
   if (std::strchr("biuf", array.dtype().kind()) == nullptr) {
@@ -120,12 +133,13 @@ py::array SolverCall::numbersFrom(const char* name, const py::object& values) co
 }
 
 void SolverCall::input(const char* name, const py::object& values) {
-  py::array array = numbersFrom(name, values);
+  py::array array = numbersFrom(name, byJoint(name, values));
   requireShape(name, array);
   array = Doubles(array);
 
-  if (inputs_.empty()) {
+  if (inputs_.empty() || (array.ndim() == 2 && shape_.size() == 1)) {
     shape_ = shapeOf(array);
+    shaped_ = name;
     count_ = array.ndim() == 1 ? 1 : array.shape(0);
   }
   inputs_.push_back({name, array});

@@ -35,7 +35,8 @@ class SolverCall {
         joint_names_(joint_names),
         n_(static_cast<Eigen::Index>(joint_names.size())) {}
 
-  /// An argument (n,) or (N, n); all have the shape of the first.
+  /// An argument (n,) or (N, n), N the same for all that have it; (n,) among them is one state for
+  /// all. Columns of a table that are named like the joints are taken by name.
   ///
   /// @throws SizeMismatchException           another shape.
   /// @throws InvalidParameterValueException  not real numbers.
@@ -74,6 +75,7 @@ class SolverCall {
   };
 
   std::string place(const std::string& argument) const;
+  pybind11::object byJoint(const char* name, const pybind11::object& values) const;
   pybind11::array numbersFrom(const char* name, const pybind11::object& values) const;
   Shape perState(const Shape& of_each) const;
   void requireShape(const char* name, const pybind11::array& array) const;
@@ -86,7 +88,8 @@ class SolverCall {
   const char* method_;
   const std::vector<std::string>& joint_names_;
   Eigen::Index n_, count_ = 0;
-  Shape shape_;  // of the first argument
+  Shape shape_;         // of the first argument (N, n), else of the first
+  std::string shaped_;  // its name
   std::vector<Argument> inputs_, results_;
 };
 

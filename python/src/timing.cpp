@@ -5,6 +5,7 @@
 #include <inverse_dynamics_timing/path.hpp>
 #include <inverse_dynamics_timing/retime.hpp>
 #include <inverse_dynamics_timing/trajectory.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -44,16 +45,39 @@ void bindPath(py::module_& module) {
           [](const Array& waypoints, const Stops& stops) {
             return Path::spline(states(waypoints, "waypoints"), stops);
           },
-          "waypoints"_a, "stops"_a = Stops(),
-          "Cubic spline through waypoints (m, n); stops: numbers of those to stand still at.")
+          "waypoints"_a, "stops"_a = Stops(), R"(Cubic spline through waypoints.
+
+Parameters
+----------
+waypoints : array_like, (m, n)
+    rad (prismatic m).
+stops : sequence of int, optional
+    Numbers of waypoints, from 0, to stand still at.
+
+Returns
+-------
+JointPath)")
       .def_static(
           "lines",
           [](const Array& waypoints, double deviation, const Stops& stops) {
             return Path::lines(states(waypoints, "waypoints"), deviation, stops);
           },
           "waypoints"_a, "deviation"_a, "stops"_a = Stops(),
-          "Straight lines; curves pass corners by at most `deviation` rad, with 0 the robot stops.")
-      .def_property_readonly("joint_count", &Path::jointCount)
+          R"(Straight lines between waypoints, with rounded corners.
+
+Parameters
+----------
+waypoints : array_like, (m, n)
+    rad (prismatic m).
+deviation : float
+    rad, by which curves pass corners at most; 0: the robot stops there.
+stops : sequence of int, optional
+    Numbers of waypoints, from 0, to stand still at.
+
+Returns
+-------
+JointPath)")
+      .def_property_readonly("joint_count", &Path::jointCount, "n.")
       .def_property_readonly(
           "knots", [](const Path& path) { return arrayOf(path.knots()); },
           "Ends of the polynomial pieces, of the path's parameter s.")
@@ -67,7 +91,32 @@ void bindPath(py::module_& module) {
               path.evaluate(at, q, dq, ddq);
             });
           },
-          "s"_a, "q, dq/ds, d2q/ds2 at s (N,): (N, n) each.");
+          "s"_a, R"(q, dq/ds and d2q/ds2.
+
+Parameters
+----------
+s : array_like, (N,)
+    The path's parameter.
+
+Returns
+-------
+tuple of three ndarray, (N, n) each
+    rad (prismatic m), and by powers of the parameter.)")
+      .def("__repr__",
+           [](const Path& path) {
+             return "<JointPath: " + std::to_string(path.jointCount()) + " joints, s from " +
+                    shown(py::float_(path.start())) + " to " + shown(py::float_(path.end())) + ">";
+           })
+      .def(py::pickle(
+          [](const Path& path) {
+            return py::make_tuple(Eigen::MatrixXd(path.coefficients()), arrayOf(path.knots()),
+                                  arrayOf(path.stops()));
+          },
+          [](const py::tuple& state) {
+            return Path::polynomials(state[0].cast<Eigen::MatrixXd>(),
+                                     state[1].cast<Eigen::VectorXd>(),
+                                     state[2].cast<Eigen::VectorXd>());
+          }));
 }
 
 Trajectory retimed(const SolverObject& solver, const Path& path, const MotionLimits& limits,
@@ -105,7 +154,7 @@ void bindTiming(py::module_& module) {
   using T = Trajectory;
   py::class_<T>(module, "TimedPath", "A path with its time.")
       .def_property_readonly("duration", &T::duration, "s.")
-      .def_property_readonly("path", &T::path)
+      .def_property_readonly("path", &T::path, "The JointPath.")
       .def_property_readonly(
           "time", [](const T& t) { return arrayOf(t.time()); }, "(K,) s, of the grid's points.")
       .def_property_readonly(
@@ -119,7 +168,28 @@ void bindTiming(py::module_& module) {
               t.evaluate(at, q, qd, qdd);
             });
           },
-          "time"_a, "q, qd, qdd at times (N,) s: (N, n) each.");
+          "time"_a, R"(q, qd and qdd.
+
+Parameters
+----------
+time : array_like, (N,)
+    s, 0 to duration.
+
+Returns
+-------
+tuple of three ndarray, (N, n) each
+    rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).)")
+      .def("__repr__",
+           [](const T& t) {
+             return "<TimedPath: " + std::to_string(t.path().jointCount()) + " joints, " +
+                    shown(py::float_(t.duration())) + " s>";
+           })
+      .def(py::pickle(
+          [](const T& t) { return py::make_tuple(t.path(), arrayOf(t.s()), arrayOf(t.speed())); },
+          [](const py::tuple& state) {
+            return T(state[0].cast<Path>(), state[1].cast<Eigen::VectorXd>(),
+                     state[2].cast<Eigen::VectorXd>());
+          }));
   module.def("retime_path", &retimed, "solver"_a, "path"_a, "limits"_a, "options"_a = O(),
              "The fastest motion along a path within limits: TimedPath.");
   module.def(

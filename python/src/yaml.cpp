@@ -31,7 +31,7 @@ void bindYaml(py::module_& module) {
   py::class_<LocatedMap> map(module, "YamlMap", "Keys with values, and which have been asked for.");
   py::class_<LocatedValue>(module, "YamlValue", "A value of a YAML file and where it stands.")
       .def_property_readonly("where", &LocatedValue::where, "`file:line: key`, as errors begin.")
-      .def_property_readonly("is_list", &LocatedValue::isList)
+      .def_property_readonly("is_list", &LocatedValue::isList, "Whether it is a list.")
       .def(
           "fail",
           [](const LocatedValue& value, const std::string& expected, const std::string& remedy) {
@@ -47,7 +47,9 @@ void bindYaml(py::module_& module) {
       .def("entries", &LocatedValue::entries, "length"_a = py::none(),
            "A list; of this length, if one is given.")
       .def("mapping", &LocatedValue::map, "Keys with values.");
-  map.def("required", &LocatedMap::required, "key"_a, "The value of a key that must be there.")
+  map.def("expect", &LocatedMap::expect, "keys"_a,
+          "Raise an error that names all of these keys that are missing.")
+      .def("required", &LocatedMap::required, "key"_a, "The value of a key that must be there.")
       .def("optional", &LocatedMap::optional, "key"_a,
            "The value of a key, or None if it is absent or null.")
       .def("reject_others", &LocatedMap::rejectOthers,

@@ -244,14 +244,25 @@ LocatedMap::LocatedMap(const LocatedValue& value) : value_(value) {
   }
 }
 
+void LocatedMap::expect(const std::vector<std::string>& keys) const {
+  std::vector<std::string> there, missing;
+  for (const auto& [key, value] : entries_) there.push_back(key);
+  for (const std::string& key : keys) {
+    if (!isOneOf(key, there)) missing.push_back(key);
+  }
+  if (missing.empty()) return;
+  value_.refuse((missing.size() == 1 ? "the key " + missing[0] + " is missing"
+                                     : "the keys " + joined(missing) + " are missing") +
+                "; keys: " + (there.empty() ? "none" : joined(there)));
+}
+
 LocatedValue LocatedMap::required(const std::string& key) {
   if (const auto found = optional(key)) return *found;
-  std::vector<std::string> keys;
+  expect({key});
   for (const auto& [other, value] : entries_) {
     if (other == key) value.fail("a value");
-    keys.push_back(other);
   }
-  value_.refuse("the key " + key + " is missing; keys: " + (keys.empty() ? "none" : joined(keys)));
+  std::abort();
 }
 
 LocatedMap::Entries LocatedMap::leaves() const {

@@ -177,6 +177,8 @@ Conventions readConventions(LocatedMap& file, int schema) {
 
 Model readModel(const LocatedValue& document) {
   LocatedMap file = document.map();
+  file.expect({"schema", "name", "source", "validity", "units", "geometry", "parameters", "gravity",
+               "joints"});
   const int schema = readSchema(file.required("schema"));
   const std::string name = file.required("name").text();
   const std::string source = file.required("source").text();

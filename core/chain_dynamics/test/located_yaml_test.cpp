@@ -53,6 +53,10 @@ TEST(LocatedYaml, ErrorsNameFileLineKeyAndRemedy) {
             "a.yaml:3: list: expected a list of 3, got a list of 2");
   EXPECT_EQ(errorOf([&] { mapOf(text).required("name"); }),
             "a.yaml:1: the key name is missing; keys: schema, tip, list, empty, last");
+  EXPECT_EQ(errorOf([&] {
+              mapOf(text).expect({"name", "tip", "plugin"});
+            }),
+            "a.yaml:1: the keys name, plugin are missing; keys: schema, tip, list, empty, last");
   EXPECT_EQ(errorOf([&] { mapOf(text).entries()[3].second.number(); }),
             "a.yaml:4: empty: expected a number, got nothing");
   EXPECT_EQ(errorOf([&] {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/changeable_robot.hpp"
 
+#include <pthread.h>
+
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <new>
+#include <set>
 #include <shared_mutex>
 #include <utility>
 
@@ -14,6 +18,53 @@
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
+
+/// All robots that may change. A fork takes their locks, so that the child gets no change half done.
+class Forks {
+ public:
+  static Forks& all() {
+    static auto* const kAll = new Forks;  // solvers may outlive static objects
+    return *kAll;
+  }
+  void add(ChangingConditions* one) {
+    const std::lock_guard<std::mutex> lock(busy_);
+    living_.insert(one);
+  }
+  void remove(ChangingConditions* one) {
+    const std::lock_guard<std::mutex> lock(busy_);
+    living_.erase(one);
+  }
+
+ private:
+  Forks() { pthread_atfork(&before, &inParent, &inChild); }
+
+  static void before() {
+    all().busy_.lock();
+    for (ChangingConditions* const one : all().living_) {
+      one->changes_.lock();
+      one->entrance_.lock();
+    }
+  }
+  static void inParent() {
+    for (ChangingConditions* const one : all().living_) {
+      one->entrance_.unlock();
+      one->changes_.unlock();
+    }
+    all().busy_.unlock();
+  }
+  static void inChild() {
+    // Threads that hold it for a batch aren't there to give it back.
+    for (ChangingConditions* const one : all().living_) new (&one->batches_) std::shared_mutex;
+    inParent();
+  }
+
+  std::mutex busy_;
+  std::set<ChangingConditions*> living_;
+};
+
+ChangingConditions::ChangingConditions() { Forks::all().add(this); }
+
+ChangingConditions::~ChangingConditions() { Forks::all().remove(this); }
 
 chain_dynamics::SpatialInertia<double> ChangingConditions::Conditions::payload() const {
   auto sum = chain_dynamics::SpatialInertia<double>::zero();

@@ -148,6 +148,7 @@ void throwConfigurationError(const std::string& text) {
 
 RunConfiguration readFile(const std::string& file) {
   LocatedMap top = LocatedValue::ofFile(file, &throwConfigurationError).map();
+  top.expect({"schema", "name", "description", "plugin"});
   const LocatedValue schema = top.required("schema");
   if (schema.integer() != kSchema) {
     schema.fail(std::to_string(kSchema), "it was written for another version of this command");

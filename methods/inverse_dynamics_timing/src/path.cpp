@@ -105,6 +105,14 @@ Path::Path(Index joints, const std::vector<double>& knots)
     : knots_(Eigen::Map<const VectorXd>(knots.data(), static_cast<Index>(knots.size()))),
       coefficients_(MatrixXd::Zero(joints, kTerms * (static_cast<Index>(knots.size()) - 1))) {}
 
+Path Path::polynomials(const Points& coefficients, const Eigen::Ref<const VectorXd>& knots,
+                       const Eigen::Ref<const VectorXd>& stops) {
+  Path path(coefficients.rows(), {knots.data(), knots.data() + knots.size()});
+  path.coefficients_ = coefficients;
+  path.stops_ = stops;
+  return path;
+}
+
 Path Path::spline(const Points& waypoints, const std::vector<Index>& stops) {
   const Way way = wayThrough(waypoints);
   const MatrixXd M = curvatures(way);

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics import _core
+from inverse_dynamics.arguments import checked
 from inverse_dynamics.arrays import stretches
 from inverse_dynamics.contact import (
     AccelerationResidual,
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import Solver
     from inverse_dynamics.arrays import Floats, Integers, Mask
     from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.joint_log import Recorded
     from inverse_dynamics.robots.robots import Robot
 
 FALSE_ALARMS = 1.0
@@ -143,12 +145,13 @@ class ContactOptions(RunOptions, total=False):
     friction_band: Sequence[float]
 
 
+@checked
 def find_contacts(
-    bag: Path | str,
-    robot: Robot | Path | str,
+    bag: Recorded,
+    robot: Robot | Solver | Path | str | None = None,
     *,
     quiet: tuple[float, float] | None = None,
-    quiet_recording: Path | str | None = None,
+    quiet_recording: Recorded | None = None,
     false_alarms: float = FALSE_ALARMS,
     progress: Progress = no_progress,
     **options: Unpack[ContactOptions],
@@ -169,6 +172,19 @@ def find_contacts(
     ------
     UserError
         Those of evaluate(), InvalidParameterError.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from inverse_dynamics import Solver, find_contacts
+    >>> t = np.linspace(0, 10, 2001)
+    >>> phase = t[:, None] + np.arange(6)
+    >>> q, qd = np.sin(phase), np.cos(phase)
+    >>> tau = Solver("ur10_simulated").torques(q, qd, -q) + np.random.default_rng(1).normal(0, 0.1, q.shape)
+    >>> tau[1400:1500] += Solver("ur10_simulated").external_torques(q[1400:1500], [0, 0, -30, 0, 0, 0])  # N
+    >>> table = {"time": t, "q": q, "qd": qd, "effort": tau}
+    >>> [round(contact.begin) for contact in find_contacts(table, "ur10_simulated", quiet=(0, 5)).contacts]
+    [7]
     """
     if quiet is not None and not -_LATEST < quiet[0] < quiet[1] < _LATEST:
         raise EvaluationError(

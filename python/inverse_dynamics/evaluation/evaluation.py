@@ -39,15 +39,14 @@ from inverse_dynamics.show.result import PAGE, SERIES, ResultDirectory, files_of
 from inverse_dynamics.show.tables import error_columns
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from matplotlib.figure import Figure
     from typing_extensions import Unpack
 
+    from inverse_dynamics._core import Solver
     from inverse_dynamics.arrays import DataFrame, Floats
     from inverse_dynamics.diagnosis.compare import Cause
     from inverse_dynamics.progress import Progress
-    from inverse_dynamics.recordings.joint_log import Storage
+    from inverse_dynamics.recordings.joint_log import Recorded, Storage
     from inverse_dynamics.show.result import Line
 
 __all__ = [
@@ -233,6 +232,13 @@ class Evaluation(ResultDirectory):
         }
         write_text(directory / self.contents.mark, json_text(about))
 
+    @staticmethod
+    def load(directory: Path | str) -> Evaluation:
+        """The evaluation that save() wrote; without what the fields say isn't in files. Raises OutputError."""
+        from inverse_dynamics.evaluation.files import read_evaluation
+
+        return read_evaluation(directory)
+
     def __getstate__(self) -> dict[str, Any]:
         """All that files hold: a copy has no run, whose solver can't be copied."""
         found = self.explained
@@ -304,8 +310,8 @@ write_evaluation = Evaluation.save
 
 @checked
 def evaluate(
-    bag: Path | str | Mapping[str, Any] | DataFrame,
-    robot: Robot | Path | str,
+    bag: Recorded,
+    robot: Robot | Solver | Path | str | None = None,
     *,
     progress: Progress = no_progress,
     scratch: Path | str = "",
@@ -318,10 +324,12 @@ def evaluate(
     Parameters
     ----------
     bag
-        A recording or a table, see recordings.py; or arrays by name, (N,) or (N, n), or a table of pandas
-        or polars, with columns as docs/tables.md has them.
+        A recording or a table, see recordings.py; its samples; or arrays by name, (N,) or (N, n), a structured
+        array or a DataFrame of pandas or polars, with columns as docs/tables.md has them. Columns that are named
+        like joints are taken by name; NaN, null and masked numbers leave their row out.
     robot
-        A name of robot_names(), the file of a run configuration, or one that is loaded.
+        A name of robot_names(), the file of a run configuration, or one that is loaded; a Solver, which is taken
+        as it is; none: the description `urdf` alone.
     scratch
         Directory for unnamed files that hold the arrays of a recording that needn't fit into memory.
     **options

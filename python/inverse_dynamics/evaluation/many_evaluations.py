@@ -96,7 +96,7 @@ class FailedRecording:
     error: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ManyEvaluations:
     """Results of evaluate_many(), in the order of the recordings."""
 
@@ -117,6 +117,10 @@ class ManyEvaluations:
     def evaluation(self, name: str) -> Evaluation:
         """One of them, with its samples. Raises OutputError."""
         return evaluations.read_evaluation(self.directory / name)
+
+    def __repr__(self) -> str:
+        recordings = counted(len(self.summaries), "recording")
+        return f"<ManyEvaluations in {self.directory}: {recordings}, {len(self.failures)} failed>"
 
 
 @dataclass(frozen=True)

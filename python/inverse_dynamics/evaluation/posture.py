@@ -22,12 +22,11 @@ from inverse_dynamics.robots.solvers import brings_own_model
 from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-    from typing import Any
+    from collections.abc import Sequence
 
     from inverse_dynamics.arrays import Parameter
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.recordings.joint_log import Recorded
     from inverse_dynamics.robots.robots import Robot
 
 LOCKED = "locked_joints."
@@ -56,7 +55,7 @@ def locked_joints(robot: Robot) -> dict[str, float]:
 
 
 def posture_of(
-    bag: Path | Mapping[str, Any],
+    bag: Recorded,
     robot: Robot,
     description: str,
     joint_names: Sequence[str],

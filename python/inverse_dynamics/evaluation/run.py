@@ -12,7 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, cast
 
 from inverse_dynamics import _core
-from inverse_dynamics.evaluation.posture import posture_of
+from inverse_dynamics._core import Solver
+from inverse_dynamics.errors import RobotError
+from inverse_dynamics.evaluation.posture import Posture, posture_of
 from inverse_dynamics.evaluation.samples import MASKS, SampleReport
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.bags import topics_of
@@ -21,7 +23,7 @@ from inverse_dynamics.recordings.log_format import LogFormat
 from inverse_dynamics.recordings.recordings import open_motion
 from inverse_dynamics.recordings.time_window import TimeWindow
 from inverse_dynamics.robots.arm import Arm
-from inverse_dynamics.robots.robots import Robot, load_robot, with_changes
+from inverse_dynamics.robots.robots import Robot, robot_of, with_changes
 from inverse_dynamics.robots.solvers import description_notes
 
 if TYPE_CHECKING:
@@ -30,10 +32,16 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from inverse_dynamics._core import Accelerations, Evaluated
-    from inverse_dynamics.arrays import DataFrame, Floats, Parameter
+    from inverse_dynamics.arrays import Floats, Parameter
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.bags import JointStateTopic
-    from inverse_dynamics.recordings.joint_log import Clock
+    from inverse_dynamics.recordings.joint_log import Clock, Recorded
+
+
+ARRAYS = Path("arrays")
+"""What a recording without a file is called."""
+
+_OF_SOLVERS = ("plugin", "friction", "urdf", "root", "tip", "gravity", "parameters")
 
 
 class Overrides(TypedDict, total=False):
@@ -96,14 +104,22 @@ class Run:
     progress: Callable[[float], None]  # told the share that is done
 
 
-def overridden(robot: Robot | Path | str, options: RunOptions) -> Robot:
-    """The run configuration with the entries that options replace. Raises UserError."""
+def overridden(robot: Robot | Solver | Path | str | None, options: RunOptions) -> Robot:
+    """The run configuration with the entries that options replace. Raises UserError.
+
+    robot: none: the description among the options. Of a Solver nothing is replaced that it was made of.
+    """
     given: dict[str, Any] = {k: v for k, v in options.items() if k in Overrides.__annotations__}
+    late = [k for k in _OF_SOLVERS if given.get(k) is not None]
+    if isinstance(robot, Solver) and late:
+        raise RobotError(
+            f"{late[0]}: expected none beside a Solver, which is made already; give it to Solver()"
+        )
     if (urdf := options.get("urdf")) is not None:
         given["urdf"] = Path(urdf)
     if (joints := options.get("joints")) is not None:
         given["joints"] = tuple(joints)
-    return with_changes(robot if isinstance(robot, Robot) else load_robot(robot), **given)
+    return with_changes(robot_of(robot, options.get("urdf")), **given)
 
 
 def of_run(options: Mapping[str, Any]) -> RunOptions:
@@ -118,8 +134,8 @@ def of_recording(options: RunOptions) -> RunOptions:
 
 
 def open_run(
-    recording: Path | str | Mapping[str, Any] | DataFrame,
-    robot: Robot | Path | str,
+    recording: Recorded,
+    robot: Robot | Solver | Path | str | None = None,
     *,
     progress: Progress = no_progress,
     scratch: Path | str = "",
@@ -137,14 +153,16 @@ def open_run(
     UserError
         BagError, RobotError, SolverError, EvaluationError.
     """
+    solver = robot if isinstance(robot, Solver) else None
     robot = overridden(robot, options)
     topic, clock = options.get("topic"), options.get("clock", "auto")
     source = Path(recording) if isinstance(recording, str) else recording
-    bag = source if isinstance(source, Path) else Path("arrays")
+    bag = source if isinstance(source, Path) else ARRAYS
     window = TimeWindow(options.get("start"), options.get("end"))
 
-    arm = Arm(robot)
-    posture = posture_of(source, robot, arm.description, arm.joint_names, topic=topic)
+    arm, posture = Arm(robot, solver), Posture()
+    if solver is None:
+        posture = posture_of(source, robot, arm.description, arm.joint_names, topic=topic)
     if posture.parameters:
         robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
         arm = Arm(robot)

@@ -31,7 +31,7 @@ from inverse_dynamics.recordings.times import check_increasing, check_seconds
 from inverse_dynamics.recordings.vocabulary import ACCELERATION, POSITION, VELOCITY
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.motion_energy import MotionEnergy
-from inverse_dynamics.robots.robots import Robot, load_robot
+from inverse_dynamics.robots.robots import Robot, robot_of
 from inverse_dynamics.show.result import Result
 from inverse_dynamics.wording import counted
 
@@ -89,6 +89,14 @@ class TrajectoryTorques(Result):
         time, torques = np.concatenate(self.times), np.concatenate(self.torques)
         return tuple(self._load(j, trajectory, time, torques[:, j]) for j in range(len(self.units)))
 
+    def save(
+        self, out: Path | str, *, overwrite: bool = False, progress: Progress = no_progress
+    ) -> tuple[str, ...]:
+        """A copy of the file with the efforts: see write_trajectory_torques()."""
+        from inverse_dynamics.feedforward.files import write_trajectory_torques
+
+        return write_trajectory_torques(self, out, overwrite=overwrite, progress=progress)
+
     def _load(self, j: int, trajectory: Integers, time: Floats, torque: Floats) -> JointLoad:
         most = int(np.abs(torque).argmax())
         load = JointLoad(
@@ -135,8 +143,7 @@ def trajectory_torques(
         BagError, also for times that don't increase or aren't seconds; RobotError, SolverError.
     """
     path = Path(path)
-    if not isinstance(robot, Robot):
-        robot = load_robot(robot)
+    robot = robot_of(robot)
     arm = Arm(robot)
     solver, joints = arm.solver, arm.recorded_names
     trajectories: list[JointTrajectory] = []

@@ -43,9 +43,10 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.identification.blocks import FitBlock
     from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.joint_log import Recorded
     from inverse_dynamics.robots.robots import Robot
 
-    KnownPayload = tuple[Path | str, Mapping[str, Parameter]]
+    KnownPayload = tuple[Recorded, Mapping[str, Parameter]]
     """A recording, and the parameters payload.* of what the tip carries in it."""
 
 MOST_UNCERTAIN = 0.1
@@ -70,7 +71,7 @@ class _Recording:
 
 
 def identify_drive_gains(
-    recordings: Sequence[Path | str],
+    recordings: Sequence[Recorded],
     known_payloads: Sequence[KnownPayload],
     robot: Robot,
     fitter: ArmFitter,

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.joint_log import Recorded
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class HoldOut:
 
 def hold_out(
     found: Identification,
-    recording: Path | str,
+    recording: Recorded,
     *,
     progress: Progress = no_progress,
     **options: Unpack[RunOptions],
@@ -58,8 +59,8 @@ def hold_out(
 
     options: those of evaluate(). Raises UserError.
     """
-    recording = Path(recording)
-    if recording.resolve() in [path.resolve() for path in found.recordings]:
+    used = [path.resolve() for path in found.recordings]
+    if isinstance(recording, Path | str) and Path(recording).resolve() in used:
         raise IdentificationError(
             f"--hold-out {recording}: expected a recording that nothing was fitted to, got one of those "
             "that were; give another"
@@ -87,7 +88,7 @@ def hold_out(
     computed = baseline_torques(solvers, motion, fitted)
     computed["identified"] = (measured + result.computed - result.measured)[kept]
     return HoldOut(
-        recording=recording,
+        recording=result.bag,
         rmse={
             column: np.sqrt(((torques - measured[kept]) ** 2).mean(0))
             for column, torques in computed.items()

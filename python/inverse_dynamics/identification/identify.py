@@ -15,7 +15,7 @@ from inverse_dynamics.arguments import checked
 from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run, torques_with_gravity
 from inverse_dynamics.evaluation.posture import LOCKED, locked_joints, posture_of, still_joints
 from inverse_dynamics.evaluation.ranges import on_one_turn
-from inverse_dynamics.evaluation.run import RunOptions, of_recording, overridden
+from inverse_dynamics.evaluation.run import ARRAYS, RunOptions, of_recording, overridden
 from inverse_dynamics.identification.baselines import baseline_torques, baselines
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.coupling import coupling_of
@@ -26,6 +26,7 @@ from inverse_dynamics.identification.findings import (
     gravity_finding,
     motion_findings,
 )
+from inverse_dynamics.identification.hold_out import hold_out as held_out_errors
 from inverse_dynamics.identification.knowledge import (
     assumed,
     independent_samples,
@@ -58,7 +59,7 @@ from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.sketch import sketch_of
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.dh_tables import guess_of
-from inverse_dynamics.robots.robots import RIGID_BODY, Robot
+from inverse_dynamics.robots.robots import RIGID_BODY, Robot, robot_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -71,6 +72,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.identification.drive_gains import KnownPayload
     from inverse_dynamics.identification.result import DriveGain, Level
     from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.joint_log import Recorded
 
 BLOCKS = 5
 """Contiguous blocks that all recordings are cut into, of which each is predicted by the others."""
@@ -82,9 +84,10 @@ _BAND_SAMPLES = 5_000
 
 @checked
 def identify(
-    recordings: Sequence[Path | str],
-    robot: Robot | Path | str,
+    recordings: Recorded | Sequence[Recorded],
+    robot: Robot | Solver | Path | str | None = None,
     *,
+    hold_out: Sequence[Recorded] = (),
     blocks: int | None = None,
     known_payloads: Sequence[KnownPayload] = (),
     coupling: Sequence[float] = (),
@@ -99,9 +102,12 @@ def identify(
     Parameters
     ----------
     recordings
-        As evaluate() takes them; each, or each block of one, is predicted by models of the others.
+        One, or several, as evaluate() takes them; each, or each block of one, is predicted by models of the others.
     robot
-        As in evaluate(). Its description is the prior; its model, if it has one, is compared with.
+        As in evaluate(). Its description is the prior; its model, if it has one, is compared with. None: the
+        description `urdf` alone, whose recorded efforts are torques unless effort_is says another meaning.
+    hold_out
+        Recordings to test the model on, for example of another day: nothing is fitted to them.
     blocks
         How many the recordings are cut into altogether, at least 3. By default whole recordings are held out
         where there are several, else BLOCKS, or fewer where they would be shorter than 2.5 s.
@@ -125,21 +131,23 @@ def identify(
     --------
     >>> from dataclasses import replace
     >>> import numpy as np
-    >>> from inverse_dynamics import identify, read_joint_log, write_joint_logs
+    >>> from inverse_dynamics import identify, read_joint_log
     >>> from inverse_dynamics.demo.demo import stored_recording
     >>> log = read_joint_log(stored_recording("ur10_simulated"))
     >>> rough = replace(log, effort=log.effort + 5 * np.tanh(log.qd / 0.05))  # N m of friction
-    >>> write_joint_logs("rough", {"/joint_states": rough})
-    >>> found = identify(["rough"], "ur10_simulated")
+    >>> found = identify(rough, "ur10_simulated")
     >>> bool(found.held_out["urdf"].min() > 4), bool(found.held_out["identified"].max() < 0.1)  # N m
     (True, True)
     >>> found.solver().joint_names[2]
     'elbow_joint'
     """
+    if robot is None:
+        robot = replace(robot_of(None, options.get("urdf")), effort="torque", friction=False)
     robot, stated = overridden(robot, options), of_recording(options)
     check_accepted(accept)
     description = _description(robot)
-    _check_given(recordings, known_payloads)
+    recordings = list(recordings) if isinstance(recordings, list | tuple) else [recordings]
+    _check_given(recordings, [path for path, _ in known_payloads])
     described = _core.FastModel.from_urdf(
         description,
         root=robot.root,
@@ -151,7 +159,7 @@ def identify(
     motors, unfitted = coupling_of(coupling, robot.gears, len(joints))
     # Links are the description's, whatever model is compared with.
     links = replace(robot, model=None)
-    first, topic = Path(recordings[0]), stated.get("topic")
+    first, topic = recordings[0], stated.get("topic")
     posture = posture_of(first, links, description, joints, topic=topic)
     robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
     fitter = _core.ArmFitter.from_urdf(
@@ -172,10 +180,15 @@ def identify(
     evaluations = on_one_turn(
         [evaluate_run(open_run(path, robot, progress=progress, **stated)) for path in recordings]
     )
+    if len(evaluations) > 1:  # names for those without one
+        evaluations = [
+            replace(e, bag=Path(f"arrays {k}")) if e.bag == ARRAYS else e
+            for k, e in enumerate(evaluations, 1)
+        ]
     still = still_joints(evaluations)
     some = 0 < len(still.parameters) < len(joints)
     if some and not (len(coupling) or robot.gears):  # which are of all joints
-        others: dict[str, Any] = {"known_payloads": known_payloads, "accept": accept}
+        others: dict[str, Any] = {"known_payloads": known_payloads, "accept": accept, "hold_out": hold_out}
         moving = _without(robot, joints, still.parameters)
         found = identify(recordings, moving, blocks=blocks, progress=progress, **others, **stated)
         return replace(found, notes=(*still.notes, *found.notes))
@@ -194,7 +207,9 @@ def identify(
     notes = tuple(dict.fromkeys((*posture.notes, *unfitted, *found.notes)))
     found = replace(found, drive_gains=gains, notes=notes)
     check_result(found, accept)
-    return found
+    same: RunOptions = {"effort_is": stated.get("effort_is"), "topic": topic}
+    tests = (held_out_errors(found, test, progress=progress, **same) for test in hold_out)
+    return replace(found, hold_out=tuple(tests))
 
 
 def _without(robot: Robot, joints: Sequence[str], held: Mapping[str, Parameter]) -> Robot:
@@ -222,11 +237,11 @@ def _description(robot: Robot) -> str:
     return read_description(robot.urdf)
 
 
-def _check_given(recordings: Sequence[Path | str], known: Sequence[KnownPayload]) -> None:
+def _check_given(recordings: Sequence[Recorded], others: Sequence[Recorded]) -> None:
     """Of a recording that is given twice, a part would be predicted by a fit to itself."""
     if not recordings:
         raise IdentificationError("recordings: expected at least one, got none")
-    given = [*recordings, *(path for path, _ in known)]
+    given = [one for one in (*recordings, *others) if isinstance(one, Path | str)]
     resolved = [Path(recording).resolve() for recording in given]
     for recording, path in zip(given, resolved, strict=True):
         if resolved.count(path) > 1:

@@ -139,7 +139,6 @@ def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.identification.hold_out import hold_out
     from inverse_dynamics.identification.identify import identify
     from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.identification.universal_robots import friction_request
@@ -166,18 +165,13 @@ def run(arguments: argparse.Namespace) -> None:
         found = identify(
             arguments.recordings,
             robot,
+            hold_out=arguments.hold_out,
             known_payloads=arguments.known_payload,
             coupling=arguments.coupling,
             accept=arguments.accept,
             progress=progress,
             **{name: getattr(arguments, name) for name in _OF_RECORDINGS},
         )
-        options = {"effort_is": arguments.effort_is, "topic": arguments.topic}
-        tests = (
-            hold_out(found, recording, progress=progress, **options)
-            for recording in arguments.hold_out
-        )
-        found = replace(found, hold_out=tuple(tests))
     texts = {"--urdf-out": urdf_text, "--mjcf-out": mjcf_text, "--ur": friction_request}
     exports = {file: texts[option](found) for option, file in more.items()}
     found.save(arguments.out, overwrite=overwrite, more=exports)

@@ -12,12 +12,14 @@ from __future__ import annotations
 
 import math
 import warnings
+from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from inverse_dynamics._core import PayloadEstimator, PayloadOptions, PayloadStatus, residual_noise
+from inverse_dynamics.arguments import checked
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import (
     CAUSE,
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import ArmUncertainty, PayloadEstimate, ResidualNoise, Solver
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.progress import Progress
+    from inverse_dynamics.recordings.joint_log import Recorded
     from inverse_dynamics.robots.robots import Robot
 
 _ALLOWED = ("payload", "tool", "mass", "friction", "drift")  # causes of errors beside a load
@@ -168,11 +171,12 @@ class Samples:
         return self.measured - solver.torques(*self.motion)
 
 
+@checked
 def estimate_payload(
-    bag: Path | str,
-    robot: Robot | Path | str,
+    bag: Recorded,
+    robot: Robot | Solver | Path | str | None = None,
     *,
-    empty: Path | str | None = None,
+    empty: Recorded | None = None,
     progress: Progress = no_progress,
     **options: Unpack[RunOptions],
 ) -> Payload:
@@ -189,6 +193,19 @@ def estimate_payload(
     ------
     UserError
         Those of evaluate(), PayloadError.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from inverse_dynamics import Solver, estimate_payload
+    >>> t = np.linspace(0, 10, 1001)
+    >>> phase = t[:, None] + np.arange(6)
+    >>> q, qd = np.sin(phase), np.cos(phase)
+    >>> arm = Solver("ur10_simulated")
+    >>> arm.set_payload("load", 3.0)  # kg
+    >>> table = {"time": t, "q": q, "qd": qd, "effort": arm.torques(q, qd, -q)}
+    >>> round(estimate_payload(table, "ur10_simulated").estimate.mass, 1)
+    3.0
     """
     evaluation = evaluate(bag, robot, progress=progress, **options)
     if evaluation.arm.guess:
@@ -197,7 +214,7 @@ def estimate_payload(
         )
     _require_own_tip(evaluation.robot, options.get("tip"))
     _require_plausible(evaluation)
-    solver = evaluation.arm.solver_with()  # one that may carry a load
+    solver = copy(evaluation.arm.solver)  # one that may carry a load
     arm, told = _arm_of(evaluation.robot)
     alone, phantom = None, []
     if empty is not None:

@@ -5,9 +5,9 @@
     table.names    # ("timestamp", "observation.state[0]", "observation.state[1]", ...)
 
 An array of N samples is a column; an array of N x n or n x N numbers is n columns `NAME[0]` ..
-`NAME[n-1]`; an array in a structure of MATLAB is `STRUCTURE.NAME`. N is the longest dimension in the
-file. Other arrays are passed over. A Parquet file, or the directory, of a LeRobot data set has the names
-that meta/info.json states: `observation.state.shoulder_pan.pos`.
+`NAME[n-1]`; an array in a structure of MATLAB is `STRUCTURE.NAME`. N is the length of the time, or else the longest
+dimension. Other arrays are passed over; one whose name alone says a quantity, `qd`, is an error. A Parquet file, or
+the directory, of a LeRobot data set has the names that meta/info.json states: `observation.state.shoulder_pan.pos`.
 """
 
 from __future__ import annotations
@@ -21,16 +21,24 @@ from zipfile import BadZipFile
 
 import numpy as np
 
+from inverse_dynamics.arrays import columns_of, names_of
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.installation.extras import is_installed, require
 from inverse_dynamics.progress import no_progress
-from inverse_dynamics.recordings.vocabulary import EFFORT, JOINTS_CHANGE, POSITION, VELOCITY
-from inverse_dynamics.wording import listed
+from inverse_dynamics.recordings.times import time_columns
+from inverse_dynamics.recordings.vocabulary import (
+    EFFORT,
+    JOINTS_CHANGE,
+    KEYS,
+    POSITION,
+    VELOCITY,
+)
+from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.arrays import DataFrame, Floats
     from inverse_dynamics.progress import Progress
 
 _INFO = "meta/info.json"  # of a LeRobot data set
@@ -50,18 +58,27 @@ def command_for(command: str, path: Path, *modules: str) -> str:
 
 
 class ArrayTable:
-    """Arrays by name, or a table of pandas or polars, as a table. path: for errors. Raises BagError."""
+    """Arrays by name, a structured array, or a DataFrame, as a table. path: for errors. Raises BagError."""
 
-    def __init__(self, path: Path, source: Mapping[str, Any]) -> None:
+    def __init__(self, path: Path, source: Mapping[str, Any] | DataFrame) -> None:
         self.path = path
         self.incomplete = 0
-        arrays = {str(name): np.asarray(source[name]) for name in list(source)}
+        if not hasattr(source, "keys") and names_of(source) is None:
+            raise BagError(
+                f"{path}: expected arrays by name, a structured array or a DataFrame, got "
+                f"{type(source).__name__}; give {{'time': t, 'q': q, 'effort': tau}}"
+            )
+        try:
+            arrays = dict(columns_of(source))
+        except (TypeError, ValueError) as error:
+            raise BagError(f"{path}: expected arrays of numbers ({error})") from error
         numeric = {name: array for name, array in arrays.items() if _is_numeric(array)}
-        samples = max((size for array in numeric.values() for size in array.shape), default=0)
+        samples = _samples(numeric)
         self._columns = dict(_columns(numeric, samples))
         self.names = tuple(self._columns)
         if not self.names:
             raise BagError(f"{path}: expected arrays of numbers, got none")
+        _check_lengths(path, numeric, samples)
 
     def read(self, columns: Sequence[str], progress: Progress = no_progress) -> Floats:
         """(N, columns) numbers, all of them finite; rows with NaN are left out. Raises BagError."""
@@ -102,6 +119,23 @@ def is_array_file(path: Path) -> bool:
 
 def _is_numeric(array: Any) -> bool:
     return array.dtype.kind in "fiub" and array.ndim in (1, 2)
+
+
+def _samples(arrays: dict[str, Any]) -> int:
+    """The length of the time, where another array has it too; else the longest dimension."""
+    times = [len(arrays[name]) for name in time_columns(tuple(arrays)) if arrays[name].ndim == 1]
+    shared = [size for size in times if sum(size in a.shape for a in arrays.values()) > 1]
+    return max(shared or (size for array in arrays.values() for size in array.shape), default=0)
+
+
+def _check_lengths(path: Path, arrays: dict[str, Any], samples: int) -> None:
+    """Raise BagError where an array whose name alone says a quantity would be passed over."""
+    if wrong := [k for k, a in arrays.items() if samples not in a.shape and k.lower() in KEYS]:
+        shapes = (f"{name} {arrays[name].shape}" for name in arrays)
+        raise BagError(
+            f"{path}: {wrong[0]}: expected {counted(samples, 'sample')}, as the others have, got the shape "
+            f"{arrays[wrong[0]].shape}; all: {', '.join(shapes)}"
+        )
 
 
 def _columns(arrays: dict[str, Any], samples: int) -> Iterator[tuple[str, Any]]:

@@ -3,13 +3,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, get_args
 
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
-    from inverse_dynamics.arrays import Floats, Integers
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+    from typing import Any
+
+    from inverse_dynamics.arrays import DataFrame, Floats, Integers
+
+    # What functions take as a recording; a structured array counts as a DataFrame.
+    Recorded = Path | str | "JointLog" | Mapping[str, Any] | DataFrame
 
 # Which stamps are the time: the header's, those of reception, or what is there.
 Clock = Literal["auto", "header", "receive"]
@@ -32,7 +39,7 @@ def check_storage(storage: str) -> None:
         raise BagError(f"storage: expected one of {', '.join(STORAGES)}, got '{storage}'")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class JointLog:
     """Joint states of one chain over time.
 
@@ -73,5 +80,23 @@ class JointLog:
         """s, from the first sample to the last one."""
         return float(self.stamps[-1] - self.stamps[0]) * 1e-9
 
+    def of(self, joints: Sequence[str]) -> JointLog:
+        """The samples of these joints, in their order; none named: of all. Raises BagError."""
+        if missing := [joint for joint in joints if joint not in self.joint_names]:
+            raise BagError(
+                f"samples: expected joints {', '.join(joints)}, got {', '.join(self.joint_names)}: missing "
+                f"{', '.join(missing)}"
+            )
+        columns = [self.joint_names.index(joint) for joint in joints or self.joint_names]
+        chosen: dict[str, Any] = {
+            name: None if (values := getattr(self, name)) is None else values[:, columns]
+            for name in ("q", "qd", "effort", "qdd")
+        }
+        return replace(self, joint_names=tuple(joints) or self.joint_names, **chosen)
+
     def __len__(self) -> int:
         return len(self.q)
+
+    def __repr__(self) -> str:
+        joints = ", ".join(self.joint_names)
+        return f"<JointLog: {len(self)} samples in {self.duration:.4g} s of {joints}>"

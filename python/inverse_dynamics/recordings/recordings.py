@@ -30,11 +30,11 @@ from inverse_dynamics.recordings.tables import is_table, open_table
 from inverse_dynamics.recordings.vocabulary import ACCELERATION, EFFORT, POSITION, VELOCITY
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.progress import Progress
-    from inverse_dynamics.recordings.joint_log import Clock
+    from inverse_dynamics.recordings.joint_log import Clock, Recorded
 
 _PUBLISHED_BY = 1000  # messages: a joint that none of them has isn't published
 # Of a table t, by name or by row: columns by name. With `/` before them, no name is that of an argument of savez().
@@ -62,7 +62,7 @@ _CONVERTED_BY: dict[str, tuple[str, ...]] = {
 
 
 def read_recording(
-    path: Path | str | Mapping[str, Any],
+    path: Recorded,
     joints: Sequence[str] = (),
     *,
     topic: str = "",
@@ -76,8 +76,8 @@ def read_recording(
     Parameters
     ----------
     path
-        A table (.csv, .tsv, .txt, .dat, .log, .asc, .parquet, .npz, .npy, .mat), arrays by name, else a
-        recording of ROS.
+        A table (.csv, .tsv, .txt, .dat, .log, .asc, .parquet, .npz, .npy, .mat), arrays by name, a structured
+        array or a DataFrame, else a recording of ROS.
     joints
         Names, in the order wanted; by default those of the recording.
     topic
@@ -115,7 +115,7 @@ def read_recording(
 
 
 def open_motion(
-    path: Path | str | Mapping[str, Any],
+    path: Recorded,
     joints: Sequence[str],
     *,
     topic: str,
@@ -130,6 +130,8 @@ def open_motion(
     """
     path = Path(path) if isinstance(path, str) else path
     check_clock(clock)
+    if isinstance(path, JointLog):
+        return _scaled(path.of(joints), form, "samples")
     if is_table(path):
         table = open_table(path, topic=topic, clock=clock)
         return read_table_log(table, joints, form, progress=progress)
@@ -171,7 +173,7 @@ def _scaled(log: JointLog, form: LogFormat, where: str) -> JointLog:
 
 
 def position_ranges(
-    path: Path | str | Mapping[str, Any],
+    path: Recorded,
     joints: Sequence[str],
     *,
     turning: Sequence[str] = (),
@@ -205,13 +207,16 @@ def position_ranges(
 
 
 def _positions(
-    path: Path | Mapping[str, Any],
+    path: Recorded,
     joints: Sequence[str],
     topic: str,
     usual_topic: str,
     form: LogFormat,
 ) -> Iterator[tuple[tuple[str, ...], Floats]]:
     """Names, and positions of them in some messages, until it shows that none is of the joints."""
+    if isinstance(path, JointLog):
+        yield path.joint_names, path.q
+        return
     if is_table(path):
         found = read_named_positions(open_table(path), joints, form)
         if found:

@@ -27,7 +27,7 @@ from inverse_dynamics.wording import counted
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.arrays import DataFrame, Floats
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Clock
 
@@ -122,13 +122,13 @@ def _check_increasing(path: Path, time: Floats) -> None:
         )
 
 
-def is_table(source: Path | Mapping[str, Any]) -> bool:
+def is_table(source: Path | Mapping[str, Any] | DataFrame) -> bool:
     """Whether open_table() reads it: arrays, or the name of such a file."""
     return not isinstance(source, Path) or is_csv(source) or is_array_file(source)
 
 
 def open_table(
-    source: Path | Mapping[str, Any], *, topic: str = "", clock: Clock = "auto"
+    source: Path | Mapping[str, Any] | DataFrame, *, topic: str = "", clock: Clock = "auto"
 ) -> Table:
     """The table of a file, of several, `q.csv+effort.csv`, or of arrays by name.
 

@@ -24,6 +24,7 @@ from inverse_dynamics._core import (
     torque_band,
 )
 from inverse_dynamics.arguments import checked
+from inverse_dynamics.arrays import by_joint
 from inverse_dynamics.diagnosis.plans import Plan, contradictions
 from inverse_dynamics.errors import BagError, UserError
 from inverse_dynamics.recordings.columns import stated_columns
@@ -41,7 +42,7 @@ from inverse_dynamics.retiming.tables import retime_lines, retime_numbers
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.located_yaml import read_mapping
 from inverse_dynamics.robots.motion_energy import MotionEnergy
-from inverse_dynamics.robots.robots import Robot, load_robot
+from inverse_dynamics.robots.robots import Robot, robot_of
 from inverse_dynamics.show.result import PAGE, ResultDirectory, files_of
 from inverse_dynamics.wording import counted
 
@@ -157,7 +158,7 @@ class PathShape(TypedDict, total=False):
 @checked
 def retime(
     path: JointPath | Path | str | ArrayLike,
-    robot: Robot | Path | str,
+    robot: Robot | Solver | Path | str,
     limits: MotionLimits | None = None,
     *,
     options: RetimeOptions | None = None,
@@ -198,8 +199,7 @@ def retime(
     >>> bool(fast.duration < 2), fast.efforts.shape[1]  # s
     (True, 6)
     """
-    if not isinstance(robot, Robot):
-        robot = load_robot(robot)
+    robot = robot_of(robot)
     if not rate > 0.0:
         raise UserError(f"rate: expected a number above zero, Hz, got {rate:g}")
     if not 0.0 <= weight < np.inf:
@@ -336,7 +336,8 @@ def _joint_path(
 def waypoints_of(path: Path | str | ArrayLike, arm: Arm, topic: str) -> Plan:
     """Waypoints, and what else a file has of the motion. Raises UserError."""
     if not isinstance(path, Path | str):
-        waypoints = np.asarray(path, dtype=np.float64)
+        table = by_joint(path, arm.recorded_names, "path")
+        waypoints = np.asarray(table, dtype=np.float64)
         if waypoints.ndim != 2 or waypoints.shape[1] != len(arm.joint_names):
             raise UserError(
                 f"path: expected waypoints (m, {len(arm.joint_names)}), one per row, got an array "
@@ -384,6 +385,7 @@ def _waypoints_of_file(path: Path, arm: Arm, topic: str) -> Plan:
 
 def _waypoints_of_yaml(path: Path, joints: Sequence[str]) -> Plan:
     top = read_mapping(path, BagError)
+    top.expect(("joints", "positions"))
     names = [entry.text() for entry in top.required("joints").entries()]
     if sorted(names) != sorted(joints):
         raise BagError(

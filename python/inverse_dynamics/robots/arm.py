@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics._core import RobotDescription, effort_options, recorded_names
-from inverse_dynamics.errors import RobotError
+from inverse_dynamics.errors import RobotError, SolverError
 from inverse_dynamics.robots.descriptions import parse_description, read_description
 from inverse_dynamics.robots.dh_tables import guess_of
 from inverse_dynamics.robots.located_yaml import read_mapping
@@ -31,10 +32,16 @@ _LIMITS = ("lower", "upper", "velocity", "effort", "acceleration", "deceleration
 class Arm:
     """The arm of a run configuration, before a recording is read. Raises UserError."""
 
-    def __init__(self, robot: Robot) -> None:
-        description = "" if robot.urdf is None else read_description(robot.urdf)
+    def __init__(self, robot: Robot, solver: Solver | None = None) -> None:
+        """solver: one that is made already, of this run configuration, whose payloads others carry, too."""
+        self._given = solver
+        if solver is None:
+            description = "" if robot.urdf is None else read_description(robot.urdf)
+            solver = open_solver(robot, description)
+        else:
+            description = solver.urdf
         self.description = description
-        self.solver = open_solver(robot, description)
+        self.solver = solver
         self.joint_names = tuple(self.solver.joint_names)
         self.recorded_names = tuple(recorded_names(robot, list(self.joint_names)))
         effort_options(robot, self.solver)  # drive gains that don't fit are refused
@@ -83,7 +90,13 @@ class Arm:
 
     def solver_with(self, **changes: Any) -> Solver:
         """Another solver, of the same arm with other entries of its run configuration. Raises SolverError."""
-        return make_solver(replace(self.robot, **changes), self.description)
+        made = make_solver(replace(self.robot, **changes), self.description)
+        if self._given is not None:
+            with suppress(SolverError):  # one without payloads
+                for name, body in self._given.payloads.items():
+                    made.set_payload(name, **body)
+                made.set_gravity(self._given.gravity)
+        return made
 
 
 def _model_limits(file: Path) -> list[dict[str, float]]:

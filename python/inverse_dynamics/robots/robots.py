@@ -12,10 +12,33 @@ keys and wrong types are errors with file, line and key.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from inverse_dynamics._core import Robot as Robot
+from inverse_dynamics._core import Solver
 from inverse_dynamics._core import load_robot as load_robot
 from inverse_dynamics._core import robot_names as robot_names
 from inverse_dynamics._core import robot_of_description as robot_of_description
 from inverse_dynamics._core import with_changes as with_changes
+from inverse_dynamics.errors import RobotError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+
+
+def robot_of(given: Robot | Solver | Path | str | None, urdf: Path | str | None = None) -> Robot:
+    """The run configuration of a name, a file, a Solver; of a description alone where none is given.
+
+    Raises RobotError.
+    """
+    if given is None:
+        if urdf is None:
+            raise RobotError(
+                "expected a robot or urdf=, got neither; robot_names() lists the names of robots"
+            )
+        return robot_of_description(urdf)
+    if isinstance(given, Solver):
+        return given.robot
+    return given if isinstance(given, Robot) else load_robot(given)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """From a run configuration to a simulated recording: what `ids simulate` does, for scripts.
 
-    run = simulate(load_robot("ur10_simulated"), rate=500, seed=1)
-    write_run(run, Path("bag"))
+    run = simulate("ur10_simulated", rate=500, seed=1)
+    run.save("bag")
+    evaluate(run.log, "ur10_simulated")
 
 configuration.py reads the settings that a run configuration has for it. Files are a bag like any other, with the truth
 beside its messages; rosbag2 and its tools read only what metadata.yaml names:
@@ -28,6 +29,7 @@ from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.bags import write_joint_logs
 from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.robots.dh_tables import guess_of
+from inverse_dynamics.robots.robots import Robot, robot_of
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.controller import default_gains
@@ -63,7 +65,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Storage
-    from inverse_dynamics.robots.robots import Robot
     from inverse_dynamics.simulation.model import Friction, SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
     from inverse_dynamics.simulation.urdf import UrdfChain
@@ -80,7 +81,7 @@ CONTENTS = Contents(
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SimulatedRun:
     """A simulated recording, the truth behind it, and how it was made."""
 
@@ -102,6 +103,40 @@ class SimulatedRun:
         computed = solver.torques(motion.q, motion.qd, motion.qdd)
         return np.asarray(np.abs(computed - (motion.effort - motion.friction)).max(axis=0))
 
+    def save(
+        self,
+        out: Path | str,
+        *,
+        storage: Storage = "sqlite3",
+        overwrite: bool = False,
+        progress: Progress = no_progress,
+    ) -> None:
+        """Writes the recording to the directory `out`, whole or not at all.
+
+        overwrite: replace an older simulated recording. Raises OutputError, BagError.
+        """
+        out = Path(out)
+        with written_whole(out, overwrite=overwrite, contents=CONTENTS) as directory:
+            bag = directory / out.name  # its files are named after the directory they will be in
+            write_joint_logs(bag, {self.log.topic: self.log}, storage=storage, progress=progress)
+            move_up(bag)
+            settings = {**self.settings, "storage": storage}
+            write_text(directory / MARK, yaml.safe_dump(settings, sort_keys=False))
+            trajectory = trajectory_text(self.trajectory, self.trajectory_source)
+            write_text(directory / "trajectory.yaml", trajectory)
+            names = ("time", "q", "qd", "qdd", "effort", "friction", "q_desired")
+            truth = {name: getattr(self.motion, name)[self.recorded.rows] for name in names}
+            np.savez(
+                directory / "truth.npz", joint_names=np.array(self.settings["joints"]), **truth
+            )
+
+    def __repr__(self) -> str:
+        notes = "".join(f"\nnote: {note}" for note in self.notes[:8])
+        return f"<SimulatedRun of {self.settings['robot']}: {self.log!r}>{notes}"
+
+
+write_run = SimulatedRun.save
+
 
 class SimulationOptions(PlantOptions, total=False):
     """What is simulated, and how it is recorded.
@@ -120,23 +155,41 @@ class SimulationOptions(PlantOptions, total=False):
 
 
 def simulate(
-    robot: Robot,
+    robot: Robot | Solver | Path | str,
     *,
-    trajectory: Path | Trajectory | None = None,
+    trajectory: Path | str | Trajectory | None = None,
     optimise: bool = False,
     say: Callable[[str], None] = lambda text: None,
     progress: Progress = no_progress,
     **options: Unpack[SimulationOptions],
 ) -> SimulatedRun:
-    """Simulates a robot under a joint trajectory controller, and records its joint states.
+    """Simulate a robot under a joint trajectory controller, and record its joint states.
 
-    trajectory: a file or an object; None: the run configuration's; without one, or with `optimise`, a new exciting
+    Parameters
+    ----------
+    robot
+        As evaluate() takes it.
+    trajectory
+        A file or an object; by default the run configuration's. Without one, or with `optimise`, a new exciting
         trajectory is searched for, which takes about a minute.
-    say: called with a sentence before each slow step.
-    options: of the plant and of the recording, see SimulationOptions.
+    say
+        Called with a sentence before each slow step.
+    **options
+        Of the plant and of the recording, see SimulationOptions.
 
-    Raises UserError: SimulationError, TrajectoryError, RobotError.
+    Raises
+    ------
+    UserError
+        SimulationError, TrajectoryError, RobotError.
+
+    Examples
+    --------
+    >>> from inverse_dynamics import evaluate, simulate
+    >>> run = simulate("ur10_simulated", duration=2.0, table=False)
+    >>> evaluate(run.log, "ur10_simulated").mean_rmse < 0.1  # N m
+    True
     """
+    robot = robot_of(robot)
     description = description_of(robot)
     plant = cast(
         "PlantOptions", {k: v for k, v in options.items() if k in PlantOptions.__annotations__}
@@ -206,35 +259,10 @@ def simulate(
     )
 
 
-def write_run(
-    run: SimulatedRun,
-    out: Path,
-    *,
-    storage: Storage = "sqlite3",
-    overwrite: bool = False,
-    progress: Progress = no_progress,
-) -> None:
-    """Writes a simulated recording to the directory `out`, whole or not at all.
-
-    overwrite: replace an older simulated recording. Raises OutputError, BagError.
-    """
-    with written_whole(out, overwrite=overwrite, contents=CONTENTS) as directory:
-        bag = directory / out.name  # its files are named after the directory they will be in
-        write_joint_logs(bag, {run.log.topic: run.log}, storage=storage, progress=progress)
-        move_up(bag)
-        settings = {**run.settings, "storage": storage}
-        write_text(directory / MARK, yaml.safe_dump(settings, sort_keys=False))
-        trajectory = trajectory_text(run.trajectory, run.trajectory_source)
-        write_text(directory / "trajectory.yaml", trajectory)
-        names = ("time", "q", "qd", "qdd", "effort", "friction", "q_desired")
-        truth = {name: getattr(run.motion, name)[run.recorded.rows] for name in names}
-        np.savez(directory / "truth.npz", joint_names=np.array(run.settings["joints"]), **truth)
-
-
-def _given_trajectory(given: Path | Trajectory, chain: UrdfChain) -> tuple[Trajectory, str]:
+def _given_trajectory(given: Path | str | Trajectory, chain: UrdfChain) -> tuple[Trajectory, str]:
     """The trajectory, and in words where it comes from."""
-    if isinstance(given, Path):
-        return read_trajectory(given, chain.joint_names)
+    if isinstance(given, Path | str):
+        return read_trajectory(Path(given), chain.joint_names)
     return given, "Given by the caller."
 
 

@@ -172,6 +172,7 @@ def read_trajectory(file: Path, joint_names: Sequence[str]) -> tuple[Trajectory,
     Raises TrajectoryError.
     """
     top = read_mapping(file, TrajectoryError)
+    top.expect(("schema", "kind", "joints"))
     schema = top.required("schema")
     if schema.integer() != SCHEMA:
         schema.fail(f"{SCHEMA}", "it was written for another version of this command")
@@ -186,6 +187,7 @@ def read_trajectory(file: Path, joint_names: Sequence[str]) -> tuple[Trajectory,
 
 
 def _fourier(top: Mapping, names: tuple[str, ...], order: list[int]) -> FourierTrajectory:
+    top.expect(("period", "center", "sine", "cosine"))
     period = top.required("period")
     if period.number() <= 0:
         period.fail("a time in s above zero")
@@ -196,6 +198,7 @@ def _fourier(top: Mapping, names: tuple[str, ...], order: list[int]) -> FourierT
 
 
 def _waypoints(top: Mapping, names: tuple[str, ...], order: list[int]) -> WaypointTrajectory:
+    top.expect(("times", "positions"))
     times_value = top.required("times")
     times = _row(times_value)
     if len(times) < 2 or times[0] != 0.0 or not (np.diff(times) > 0).all():

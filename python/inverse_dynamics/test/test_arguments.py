@@ -57,7 +57,7 @@ WRONG = {
         lambda s: LawOptions(Q, np.zeros((2, 6)))
     ),
     "ComputedTorque: argument gains: expected Gains, got 3": lambda s: ComputedTorque(s, 3, 4),
-    "evaluate: argument bag: expected Path | str | Mapping[str, Any] | DataFrame, got 3": (
+    "evaluate: argument bag: expected Path | str | JointLog | Mapping[str, Any] | DataFrame, got 3": (
         lambda s: evaluate(3, UR10)
     ),
     "evaluate: argument joints: expected Sequence[str] | None, got 'elbow'": (
@@ -66,12 +66,10 @@ WRONG = {
     "evaluate: argument cutof: unknown; did you mean cutoff?": (
         lambda s: evaluate("bag", UR10, cutof=5)
     ),
-    "identify: argument recordings: expected Sequence[Path | str], got 'bag'": (
-        lambda s: identify("bag", UR10)
+    "identify: missing a required argument: 'recordings'; it takes recordings, robot": (
+        lambda s: identify(urdf="arm.urdf")
     ),
-    "identify: missing a required argument: 'robot'; it takes recordings, robot": (
-        lambda s: identify(["bag"])
-    ),
+    "Solver: argument robot: unknown; did you mean plugin?": lambda s: Solver(robot=UR10),
     "retime: argument limits: expected MotionLimits | None, got 3": (
         lambda s: retime([Q, Q], UR10, limits=3)
     ),

@@ -3,12 +3,13 @@
 
 import doctest
 import inspect
+import re
 
 import numpy as np
 import pytest
 
 import inverse_dynamics
-from inverse_dynamics import _core
+from inverse_dynamics import _core, contact, control
 
 PUBLIC = {name: getattr(inverse_dynamics, name) for name in inverse_dynamics.__all__}
 BOUND = {n: v for n, v in PUBLIC.items() if v.__module__ == _core.__name__ and n != "JointError"}
@@ -50,6 +51,39 @@ def test_functions_have_sections():
         if inspect.isroutine(function) and len(inspect.signature(function).parameters) > 2:
             for section in ("Parameters", "Raises"):
                 assert f"\n{section}\n{'-' * len(section)}\n" in inspect.getdoc(function), name
+
+
+def bound_members():
+    """Functions, methods and properties of the bound module, by name."""
+    for name, value in vars(_core).items():
+        if inspect.isclass(value) and not issubclass(value, BaseException):
+            for member, of in vars(value).items():
+                if member[0] != "_" and not isinstance(of, value) and member not in ENUMS:
+                    yield name, f"{name}.{member}", getattr(of, "__func__", of)
+        elif callable(value) and name[0] != "_":
+            yield name, name, value
+
+
+ENUMS = ("name", "value")  # what pybind11 gives members of enumerations
+PUBLIC_BOUND = {*BOUND, "JointError", *contact.__all__, *control.__all__}
+
+
+def test_every_bound_member_says_what_it_is():
+    assert [place for _, place, of in bound_members() if not (of.__doc__ or "").strip()] == []
+
+
+def test_bound_functions_that_users_call_say_their_arguments_and_results():
+    lacking = []
+    for owner, place, function in bound_members():
+        if owner not in PUBLIC_BOUND or isinstance(function, property):
+            continue
+        doc, signature = inspect.getdoc(function), inspect.signature(function)
+        for name in signature.parameters:
+            if name != "self" and not re.search(rf"^[\w, ]*\b{name}\b[\w, ]* : ", doc, re.M):
+                lacking.append(f"{place}: {name}")
+        if signature.return_annotation != "None" and "\nReturns\n-------\n" not in doc:
+            lacking.append(f"{place}: Returns")
+    assert lacking == []
 
 
 def test_bound_functions_have_signatures_with_types():

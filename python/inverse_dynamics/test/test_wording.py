@@ -2,7 +2,7 @@
 import pytest
 
 from inverse_dynamics.errors import BagError, EvaluationError, UserError
-from inverse_dynamics.wording import counted, did_you_mean, shown
+from inverse_dynamics.wording import TERMINAL, counted, did_you_mean, shown
 
 
 @pytest.mark.parametrize(("count", "expected"), [(0, "0 joints"), (1, "1 joint"), (2, "2 joints")])
@@ -42,3 +42,30 @@ def test_the_text_of_an_error_is_short_and_harmless():
     assert len(text) < 1000
     assert str(EvaluationError("a\x1b", "b")) == r"('a\x1b', 'b')"
     assert str(UserError("plain 'text' of café")) == "plain 'text' of café"
+
+
+@pytest.mark.parametrize(
+    ("text", "spoken"),
+    [
+        ("state --columns 'time=t', or --rate", "state columns='time=t', or rate="),
+        ("State --scale q=deg, or one", "State scale=['q=deg'], or one"),
+        ("--quiet (quiet=): expected", "quiet: expected"),
+        ("give --quiet FROM,TO [s]", "give quiet=(FROM, TO) [s]"),
+        ("give --gravity 0,0,9.81, or", "give gravity=(0, 0, 9.81), or"),
+        ("give --effort-is current, and", "give effort_is='current', and"),
+        ("the same --effort-is and gains", "the same effort_is= and gains"),
+        ("--tip other: the model", "tip='other': the model"),
+        ("choose --from and --to in", "choose start= and end= in"),
+        ("replace it with --overwrite", "replace it with overwrite=True"),
+        ("give --accept mass --accept gain", "give accept=['mass', 'gain']"),
+        ("at --parameter locked_joints.J=...", "at parameters={'locked_joints.J': ...}"),
+        ("give gains (ids: --drive-gains), one", "give gains, one"),
+        ("with `ros2 topic echo --csv`, or", "with `ros2 topic echo --csv`, or"),
+        ("ids identify X --out a.yaml, or", "ids identify X --out a.yaml, or"),
+        ("x--y and a - b -- c", "x--y and a - b -- c"),
+    ],
+)
+def test_errors_name_arguments_in_python_and_options_in_a_terminal(text, spoken, monkeypatch):
+    assert f"{UserError(text)}" == spoken
+    monkeypatch.setenv(TERMINAL, "1")
+    assert f"{UserError(text)}" == text

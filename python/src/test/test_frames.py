@@ -122,3 +122,65 @@ def test_wrong_frames_are_named(solver, frame, text):
     with pytest.raises(UserError, match="^jacobian: argument frame: expected") as error:
         solver().jacobian(np.zeros(6), frame=frame)
     assert text in str(error.value)
+
+
+@pytest.mark.parametrize("plugin", [RIGID_BODY, PINOCCHIO])
+@pytest.mark.parametrize("arm", ARMS)
+def test_the_pose_of_a_link_is_that_of_the_tip_of_a_chain_to_it(arm, plugin):
+    if plugin not in available_solvers():
+        pytest.skip(f"{plugin} isn't built")
+    solver = solver_of(arm, plugin)
+    q = states(solver)
+    for name, of_link in moving_links(arm).items():
+        expected = of_link.tip_pose(q[:, : len(of_link.joint_names)])
+        for one, other in zip(solver.pose(q, frame=name), expected, strict=True):
+            np.testing.assert_allclose(one, other, rtol=0, atol=ROUNDING)
+    for one, other in zip(solver.pose(q), solver.tip_pose(q), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_poses_of_what_doesnt_move_and_of_what_is_beside_the_chain():
+    solver = Solver(RIGID_BODY, urdf=HAND, tip="tool", parameters={"locked_joints.bend": 0.5})
+    R, p = solver.pose([[0.0, 0.0], [1.0, 2.0]], frame="camera")
+    np.testing.assert_array_equal(p, [[1, 0, 0]] * 2)
+    np.testing.assert_array_equal(R, [np.eye(3)] * 2)
+    held = Solver(RIGID_BODY, urdf=HAND, tip="finger")
+    for one, other in zip(
+        solver.pose([0.1, 0.2], "finger"), held.tip_pose([0.1, 0.2, 0.5]), strict=True
+    ):
+        np.testing.assert_allclose(one, other, rtol=0, atol=ROUNDING)
+    with pytest.raises(
+        UserError, match=r"^pose: argument frame: expected a link or joint .*tool'\?"
+    ):
+        solver.pose([0, 0], frame="tol")
+
+
+def test_a_solver_knows_its_description():
+    solver = Solver(RIGID_BODY, urdf=HAND, tip="tool")
+    assert (solver.urdf, solver.root, solver.tip) == (HAND, "base", "tool")
+    assert Solver(RIGID_BODY, urdf=HAND, root="arm", tip="finger").root == "arm"
+    for arm in ARMS:
+        solver = Solver(RIGID_BODY, urdf=urdf_of(arm))
+        q = states(solver)
+        for one, other in zip(solver.pose(q, solver.tip), solver.tip_pose(q), strict=True):
+            np.testing.assert_allclose(one, other, rtol=0, atol=ROUNDING)
+    unknown = Solver(UR10)
+    assert (unknown.urdf, unknown.root, unknown.tip) == ("", "", "")
+
+
+def test_a_solver_knows_its_limits():
+    turning = robot(
+        link("base"), link("arm", 2.0), joint("swing", "base", "arm", kind="continuous")
+    )
+    for urdf, lower, upper in ((HAND, -3.0, 3.0), (turning, -np.inf, np.inf)):
+        solver = Solver(RIGID_BODY, urdf=urdf)
+        for name, value in {
+            "lower": lower,
+            "upper": upper,
+            "velocity": 2.0,
+            "effort": 100.0,
+        }.items():
+            np.testing.assert_array_equal(
+                solver.limits[name], np.full(len(solver.joint_names), value)
+            )
+    assert np.isfinite(Solver("ur10_real").limits["effort"]).all()

@@ -219,9 +219,12 @@ def test_wrong_shapes_are_errors(ur10, q, message):
 
 
 def test_shapes_that_differ_are_errors(ur10):
-    message = r"^torques: argument qdd: wrong shape: expected \(4, 6\), that of q, got \(6,\)$"
+    message = (
+        r"^torques: argument qdd: wrong shape: expected \(4, 6\), that of qd, or \(6,\), one state "
+        r"for all, got \(3, 6\)$"
+    )
     with pytest.raises(errors.SizeMismatchError, match=message):
-        ur10.torques(np.zeros((4, 6)), np.zeros((4, 6)), np.zeros(6))
+        ur10.torques(np.zeros(6), np.zeros((4, 6)), np.zeros((3, 6)))
 
 
 @pytest.mark.parametrize(
@@ -285,3 +288,37 @@ def test_components_need_three_arrays(ur10, out):
     )
     with pytest.raises(errors.InvalidParameterError, match=message):
         ur10.dynamic_components(np.zeros(6), np.zeros(6), out=out)
+
+
+@pytest.mark.parametrize("quantity", ["torques", "coriolis_vector", "dynamic_components"])
+@pytest.mark.parametrize("single", [0, 1])
+def test_one_state_among_many_is_that_of_all(ur10, quantity, single):
+    given = arguments(quantity, motion())
+    repeated = list(given)
+    given[single] = given[single][3]
+    repeated[single] = np.broadcast_to(given[single], (STATES, 6)).copy()
+    method = getattr(ur10, quantity)
+    for one, other in zip(method(*given), method(*repeated), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_masked_numbers_are_refused(ur10):
+    q = np.ma.masked_array(np.zeros((2, 6)), np.zeros((2, 6), bool))
+    np.testing.assert_array_equal(ur10.gravity_vector(q), ur10.gravity_vector(q.data))
+    q[1, 2] = np.ma.masked
+    with pytest.raises(errors.InvalidParameterError, match="argument q: .*masked"):
+        ur10.gravity_vector(q)
+
+
+@pytest.mark.parametrize("library", ["pandas", "polars"])
+def test_columns_of_a_table_are_taken_by_name(ur10, library):
+    frame = pytest.importorskip(library).DataFrame
+    q, swapped = motion(5)["q"], [3, 0, 5, 1, 4, 2]
+    names = [ur10.joint_names[j] for j in swapped]
+    expected = ur10.gravity_vector(q)
+    table = frame(dict(zip(names, q[:, swapped].T, strict=True)))
+    np.testing.assert_array_equal(ur10.gravity_vector(table), expected)
+    by_place = frame({f"column {j}": q[:, j] for j in range(6)})
+    np.testing.assert_array_equal(ur10.gravity_vector(by_place), expected)
+    with pytest.raises(errors.ArgumentError, match="argument q: .*got none for wrist_3_joint"):
+        ur10.gravity_vector(frame(dict.fromkeys(ur10.joint_names[:-1], q[:, 0])))

@@ -3,13 +3,17 @@
 
 import copy
 import multiprocessing
+import os
 import pickle
+import signal
+import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from example_robots import PENDULUM, RIGID_BODY, UR10
 
-from inverse_dynamics import Solver, errors, load_robot
+from inverse_dynamics import FastModel, Solver, errors, load_robot
 from inverse_dynamics.robots.solvers import open_solver
 
 COPIES = {
@@ -97,3 +101,64 @@ def test_errors_come_back_from_other_processes():
 def test_a_solver_shows_what_it_is():
     assert repr(Solver(UR10)) == f"<Solver {UR10}: 6 joints, shoulder_pan_joint to wrist_3_joint>"
     assert repr(Solver(RIGID_BODY, urdf=PENDULUM)) == f"<Solver {RIGID_BODY}: joint swing>"
+
+
+def test_a_child_that_is_forked_during_batches_can_change_its_robot():
+    too_long = 60  # s, after which a child is ended
+    solver, states = Solver("ur10_simulated"), np.zeros((3, 20_000, 6))
+    stop = threading.Event()
+
+    def compute():
+        while not stop.is_set():
+            solver.torques(*states)
+
+    batches = threading.Thread(target=compute)
+    batches.start()
+    try:
+        for _ in range(5):
+            child = os.fork()
+            if child == 0:
+                signal.alarm(too_long)
+                solver.set_payload("tool", 1.0)
+                os._exit(0 if "tool" in solver.payloads else 1)
+            assert os.waitpid(child, 0)[1] == 0
+    finally:
+        stop.set()
+        batches.join()
+    assert not solver.payloads
+
+
+def identified():
+    n = 2
+    found = SimpleNamespace(
+        parameters=np.tile([2.0, 0.1, 0, 0.2, 1, 0, 0, 1, 0, 1], (n, 1)),
+        rotor_inertia=np.full(n, 0.3),
+        friction=({"fc": 1.0, "fv": 2.0, "fo": 0.1, "width": 0.1, "shift": 0.0},) * n,
+        torque_deviation=np.ones(n),
+        seen=np.tile([-1.0, 1.0], (3, n, 1)),
+        coupling=None,
+    )
+    return FastModel.from_urdf(CHAIN).identified(found)
+
+
+MODELS = {
+    "from_urdf": lambda _: FastModel.from_urdf(CHAIN, root="arm", gravity=(1, 2, 3), threads=2),
+    "from_file": lambda file: FastModel.from_file(file),
+    "from_joints": lambda _: FastModel.from_joints(
+        *(["a", "b"], [False, True], np.stack([np.eye(3)] * 2), np.ones((2, 3)), np.ones((2, 10))),
+        gravity=(0, 0, -9.81),
+    ),
+    "identified": lambda _: identified(),
+}
+
+
+@pytest.mark.parametrize("way", COPIES)
+@pytest.mark.parametrize("made", MODELS)
+def test_a_copy_of_a_model_computes_the_same(made, way, tmp_path):
+    file = tmp_path / "model.yaml"
+    file.write_text(FastModel.from_urdf(CHAIN).file_text(name="m", source="", validity=""))
+    model = MODELS[made](f"{file}")
+    twin = COPIES[way](model)
+    state = np.linspace(-3, 3, 5 * len(model.joint_names)).reshape(5, -1)
+    np.testing.assert_array_equal(twin.torques(*3 * [state]), model.torques(*3 * [state]))
+    assert repr(twin) == repr(model)

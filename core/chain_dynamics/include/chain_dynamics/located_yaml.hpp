@@ -115,6 +115,9 @@ class LocatedValue {
 /// Keys with values, and which of them have been asked for.
 class LocatedMap {
  public:
+  /// Throws an error that names all of these keys that are missing.
+  void expect(const std::vector<std::string>& keys) const;
+
   /// The value of a key that must be there.
   LocatedValue required(const std::string& key);
 

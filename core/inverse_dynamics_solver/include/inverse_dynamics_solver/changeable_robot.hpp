@@ -30,7 +30,13 @@ namespace inverse_dynamics_solver {
 inline namespace v2 {
 
 /// Keeps what may change about a robot, and lets one thread change it after the other.
+///
+/// A process may fork while threads compute: fork() waits for a change that is under way, and in the
+/// child no lock belongs to a thread that isn't there.
 class ChangingConditions : public Payload, public VariableGravity {
+ public:
+  ~ChangingConditions() override;
+
  protected:
   /// Bodies that a robot carries, and the motion of its base.
   struct Conditions {
@@ -46,7 +52,7 @@ class ChangingConditions : public Payload, public VariableGravity {
     chain_dynamics::Model appliedTo(const chain_dynamics::Model& bare) const;
   };
 
-  ChangingConditions() = default;
+  ChangingConditions();
 
   /// Conditions from parameters, for a robot with this gravity. Throws as readPayloads().
   static std::shared_ptr<const Conditions> readConditions(const Configuration& configuration,
@@ -71,6 +77,7 @@ class ChangingConditions : public Payload, public VariableGravity {
 
  private:
   friend class MethodCall;  // whileUnchanged()
+  friend class Forks;       // the locks
 
   void changePayloads(const std::function<void(Payloads&)>& change) final;
   Payloads currentPayloads() const final;

@@ -99,7 +99,7 @@ const char* text(PayloadStatus status) noexcept;
 /// A body in the tip frame with the half widths of its 95 % intervals.
 struct PayloadEstimate {
   /// For so many joints and columns of the arm's uncertainty.
-  explicit PayloadEstimate(Eigen::Index joints, Eigen::Index arm_deviations = 0);
+  explicit PayloadEstimate(Eigen::Index joints = 0, Eigen::Index arm_deviations = 0);
 
   double mass = 0.0;                                                    ///< > 0; kg
   double mass_half_width = 0.0;                                         ///< kg

@@ -56,7 +56,14 @@ class Path {
   static Path function(const Function& evaluate, Eigen::Index joints,
                        const Eigen::Ref<const Eigen::VectorXd>& knots);
 
+  /// A path of coefficients(), knots() and stops() of another one.
+  static Path polynomials(const Points& coefficients,
+                          const Eigen::Ref<const Eigen::VectorXd>& knots,
+                          const Eigen::Ref<const Eigen::VectorXd>& stops);
+
   Eigen::Index jointCount() const { return coefficients_.rows(); }
+  /// n x (6 K), of K quintic polynomials side by side: of powers of `s` minus the piece's knot.
+  const chain_dynamics::OwnedMatrix& coefficients() const { return coefficients_; }
   /// Ends of the polynomial pieces; the first is the path's start, the last its end.
   const chain_dynamics::OwnedVector& knots() const { return knots_; }
   double start() const { return knots_[0]; }

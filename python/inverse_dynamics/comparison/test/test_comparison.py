@@ -46,7 +46,7 @@ def test_other_recordings_are_refused(evaluation):
             currents(2.0, 3.0, 4.0),
             "got 'torque, as the recording's format says' and 'current, as given, with drive gains 2 "
             "3 4 N m/A', so measured torques differ; evaluate again with the same "
-            "--effort-is",
+            "effort_is=",
         ),
         (currents(2.0, 3.0, 4.0), currents(2.0, 3.0, 5.0), "with drive gains 2 3 5 N m/A'"),
     ],

@@ -260,7 +260,7 @@ def test_measured_velocities_must_be_given(solver, motion):
 
 
 def test_without_a_quiet_part_there_are_no_thresholds(recording, robot):
-    with pytest.raises(EvaluationError, match="give --quiet FROM,TO"):
+    with pytest.raises(EvaluationError, match=r"give quiet=\(FROM, TO\)"):
         find_contacts(recording, robot)
     with pytest.raises(
         InvalidParameterError, match="recording.csv, from 0 s to 0.2 s: 2.* contact"

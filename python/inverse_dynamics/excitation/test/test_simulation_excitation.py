@@ -178,6 +178,6 @@ def test_search_needs_limits(limit: str, text: str) -> None:
 
 def test_search_that_finds_nothing_says_why() -> None:
     with pytest.raises(
-        SimulationError, match=r"no exciting motion of .* was found .*effort.*; a longer --duration"
+        SimulationError, match=r"no exciting motion of .* was found .*effort.*; a longer duration="
     ):
         optimise_excitation(arm(payload=Payload(1000.0)), QUICK)

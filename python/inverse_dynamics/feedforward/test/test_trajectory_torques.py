@@ -419,7 +419,7 @@ def test_a_table_whose_time_is_not_in_seconds_is_refused(tmp_path, robot, factor
 def test_a_table_has_no_topics_and_stays_a_table(tmp_path, robot):
     q, _, qdd, _ = motion()
     write_table(tmp_path / "plan.csv", table_of(0 * q, qdd))
-    with pytest.raises(BagError, match="--topic /planned: a table has no topics"):
+    with pytest.raises(BagError, match="topic='/planned': a table has no topics"):
         trajectory_torques(tmp_path / "plan.csv", robot, topic="/planned")
     result = trajectory_torques(tmp_path / "plan.csv", robot)
     with pytest.raises(

@@ -172,7 +172,7 @@ def test_currents_alone_determine_no_gains(currents, bags):
     with pytest.raises(IdentificationError) as caught:
         identify([bags[0]], currents.robot)
     assert "may all be twice as large" in str(caught.value)
-    assert "--known-payload" in str(caught.value)
+    assert "known_payloads=" in str(caught.value)
     assert caught.value.mistake == "Efforts are motor currents"
 
 

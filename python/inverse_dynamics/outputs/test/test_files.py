@@ -47,7 +47,7 @@ def test_an_older_result_is_replaced_on_demand(tmp_path):
     write(tmp_path / "result", "old")
     (tmp_path / "result" / "of_old").touch()
     (tmp_path / "result").chmod(0o750)
-    with pytest.raises(OutputError, match=r"result: exists already; name another .*--overwrite"):
+    with pytest.raises(OutputError, match=r"result: exists already; name another .*overwrite=True"):
         write(tmp_path / "result")
     write(tmp_path / "result", overwrite=True)
     assert os.listdir(tmp_path / "result") == [MARK]
@@ -161,7 +161,7 @@ def test_a_directory_that_is_read_from_is_neither_replaced_nor_added_to(
 ):
     places(tmp_path)
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(OutputError, match=f"{out}: {relation} {source}, which is read.*--out"):
+    with pytest.raises(OutputError, match=f"{out}: {relation} {source}, which is read.*out="):
         check_output_directory(Path(out), overwrite=True, contents=RESULT, inputs=[Path(source)])
 
 

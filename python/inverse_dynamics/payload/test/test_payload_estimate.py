@@ -461,7 +461,7 @@ def test_a_position_that_gravity_never_shows_needs_faster_joints(tmp_path):
 
 
 def test_the_tip_of_a_model_cant_be_chosen(tmp_path):
-    with pytest.raises(PayloadError, match="^--tip other: the model of ur10_real states its tip"):
+    with pytest.raises(PayloadError, match="^tip='other': the model of ur10_real states its tip"):
         _require_own_tip(load_robot("ur10_real"), "other")
     _require_own_tip(load_robot("ur10_simulated"), "other")
     _require_own_tip(load_robot("ur10_real"), None)

@@ -116,7 +116,7 @@ def test_topic_of_another_type_is_an_error(tmp_path):
     fails(
         tmp_path / "bag",
         "topic /chatter: expected type sensor_msgs/msg/JointState, got std_msgs/msg/String",
-        "--topic",
+        "topic=",
         topic="/chatter",
     )
     fails(tmp_path / "bag", "expected one topic of type sensor_msgs/msg/JointState, got 0")

@@ -151,7 +151,7 @@ def test_what_is_stated_comes_first():
             of("l{}_pos", "r{}_pos", "l{}_vel", "r{}_vel", numbers=range(2)),
             "",
             "f.csv: position: expected one set of columns, got l0_pos to l1_pos, r0_pos to r1_pos; velocity: expected "
-            "one set of columns, got l0_vel to l1_vel, r0_vel to r1_vel; state the right one, for example: --columns "
+            "one set of columns, got l0_vel to l1_vel, r0_vel to r1_vel; state the right one, for example: columns="
             "'position=l*_pos, velocity=l*_vel'",
         ),
         (["position.a"], "", "f.csv: joint b: expected a column position.b, got none"),
@@ -159,7 +159,7 @@ def test_what_is_stated_comes_first():
             ["sim_time", "real_time"],
             "",
             "f.csv: time: expected one set of columns, got sim_time, real_time; state the right one, for example: "
-            "--columns 'time=sim_time'",
+            "columns='time=sim_time'",
         ),
         (
             ["foo", "bar"],

@@ -192,7 +192,7 @@ def test_a_topic_without_messages_does_not_count(tmp_path, good, robot):
     assert read_joint_log(tmp_path / "bag").topic == "/arm"
     write_joint_logs(tmp_path / "empty", {"/arm": nothing, "/other": nothing})
     with pytest.raises(
-        UserError, match="expected one topic of type .*, got 2; name it with --topic"
+        UserError, match="expected one topic of type .*, got 2; name it with topic="
     ):
         read_joint_log(tmp_path / "empty")
 

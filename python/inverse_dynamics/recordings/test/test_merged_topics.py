@@ -121,7 +121,7 @@ def test_the_topic_that_has_everything_is_taken(tmp_path):
             "1.000000000 s to 1.490000000 s, /right from 5.000000000 s",
         ),
         ({"names": ("d",)}, "/left+/right", "/left+/right: expected effort of c, got none"),
-        ({"names": ("c",)}, "/left+/up", "has no topic /up; name one it has with --topic"),
+        ({"names": ("c",)}, "/left+/up", "has no topic /up; name one it has with topic="),
         ({"names": ("c",)}, "/left", "missing: c; give the recording's names"),
     ],
 )

@@ -376,7 +376,7 @@ def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
         file,
         header,
         "expected columns of position for 1 joint, a, got 2 columns, actual_q_0 to actual_q_1; torques depend on them; "
-        "state them with --columns 'position=actual_q_*' (* is",
+        "state them with columns='position=actual_q_*' (* is",
     )
 
 
@@ -433,8 +433,8 @@ def test_what_is_wrong_with_a_table_is_said(file, text, expected):
 @pytest.mark.parametrize(
     ("option", "said"),
     [
-        ({"topic": "/states"}, "--topic /states: a table has no topics"),
-        ({"clock": "receive"}, "--clock receive: a table has no clocks"),
+        ({"topic": "/states"}, "topic='/states': a table has no topics"),
+        ({"clock": "receive"}, "clock='receive': a table has no clocks"),
     ],
 )
 def test_what_only_bags_have_cannot_be_chosen(file, option, said):

@@ -188,6 +188,13 @@ def test_missing_key_is_named(write, key):
     fails(write("\n".join(lines)), f"the key {key} is missing")
 
 
+def test_all_missing_keys_are_named_at_once(write):
+    kept = [line for line in LEAST.splitlines() if line.startswith("name:")]
+    fails(
+        write("\n".join(kept)), ":1: the keys schema, description, plugin are missing; keys: name"
+    )
+
+
 @pytest.mark.parametrize(
     "path",
     [

@@ -87,7 +87,7 @@ def test_files_lie_beside_each_other(tmp_path):
     assert out.read_text() == "more: a_more.yml\n"
     with pytest.raises(OutputError, match="exists already"):
         SumFiles().save(out)
-    with pytest.raises(OutputError, match="in .yaml, as --sum takes it; name another file with"):
+    with pytest.raises(OutputError, match="in .yaml, as sum= takes it; name another file with"):
         SumFiles().save(tmp_path / "a.txt")
     with pytest.raises(
         OutputError, match="expected a file of its own for --b, got one of the other"

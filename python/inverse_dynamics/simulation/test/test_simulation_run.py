@@ -279,7 +279,7 @@ def test_a_motion_that_is_not_followed_is_refused(tmp_path):
     with pytest.raises(SimulationError) as error:
         simulate(arm, trajectory=SWING, rate=500)
     assert "joint swing doesn't follow the trajectory: expected at most 0.2 rad" in str(error.value)
-    assert "give a higher --rate" in str(error.value)
+    assert "give a higher rate=" in str(error.value)
 
 
 def test_a_massless_link_is_named(tmp_path):

@@ -160,7 +160,7 @@ positions: [[0, 0], [1, 2]]
         ("kind", "speed: 3\nkind", "speed: unknown key"),
         ("kind", "rests: [1]\nkind", "motion.yaml:2: rests: expected waypoints between the first"),
         ("kind", "rests: [0.5]\nkind", "motion.yaml:2: rests[0]: expected an integer"),
-        ("waypoints", "fourier", "the key period is missing"),
+        ("waypoints", "fourier", "the keys period, center, sine, cosine are missing"),
     ],
 )
 def test_mistakes_in_files_are_pointed_at(tmp_path: Path, old: str, new: str, text: str) -> None:
