@@ -60,6 +60,9 @@ void bindPath(py::module_& module) {
       .def_property_readonly(
           "stops", [](const Path& path) { return arrayOf(path.stops()); },
           "s where the robot stands still on its way.")
+      .def_property_readonly(
+          "position_ranges", [](const Path& path) { return rowsOf(path.positionRanges()); },
+          "(2, n) the least and the greatest position of each joint.")
       .def(
           "states",
           [](const Path& path, const Eigen::VectorXd& s) {
@@ -119,7 +122,13 @@ void bindTiming(py::module_& module) {
               t.evaluate(at, q, qd, qdd);
             });
           },
-          "time"_a, "q, qd, qdd at times (N,) s: (N, n) each.");
+          "time"_a, "q, qd, qdd at times (N,) s: (N, n) each.")
+      .def("slowed", &slowed, "factor"_a, "The motion slower by a factor of at least 1.");
+  module.def(
+      "sample_times",
+      [](double duration, double rate) { return arrayOf(sampleTimes(duration, rate)); },
+      "duration"_a, "rate"_a,
+      "(N,) s: 0, 1 / rate, ..., duration [s], rising; the last step is half a period at least.");
   module.def("retime_path", &retimed, "solver"_a, "path"_a, "limits"_a, "options"_a = O(),
              "The fastest motion along a path within limits: TimedPath.");
   module.def(

@@ -23,6 +23,37 @@ using Eigen::VectorXd;
 
 constexpr Index kLeastOfPiece = 4;  // intervals of each polynomial piece
 constexpr Index kLeastAtStop = 40;  // and of one that begins or ends at rest
+constexpr double kBend = 0.05;      // of q' within an interval, relative
+constexpr double kMostParts = 20;   // into which a bend divides an interval
+constexpr double kBeside = 0.01;    // of an interval
+
+/// The grid with intervals divided where the path bends, and with points on both sides of where a joint
+/// turns back: friction steps there.
+VectorXd dividedAtBends(const Path& path, const std::vector<double>& grid) {
+  const Index n = path.jointCount();
+  VectorXd q(n), here(n), next(n), ddq(n);
+  const std::vector<double> turns = path.turningPoints();
+  auto turn = std::upper_bound(turns.begin(), turns.end(), grid.front());
+  std::vector<double> s{grid.front()};
+  path.evaluate(grid.front(), q, next, ddq);
+  for (std::size_t k = 0; k + 1 < grid.size(); ++k) {
+    const double from = grid[k], length = grid[k + 1] - from;
+    here = next;
+    path.evaluate(grid[k + 1], q, next, ddq, k + 2 == grid.size());
+    const double bend = (next - here).norm() / (kBend * std::max(here.norm(), next.norm()));
+    const double parts = std::ceil(std::clamp(bend, 1.0, kMostParts)),
+                 beside = kBeside * length / parts;
+    const auto add = [&](double at) {
+      if (at > s.back() + beside / 2 && at < grid[k + 1] - beside / 2) s.push_back(at);
+    };
+    for (double part = 1.0; part <= parts; ++part) {
+      const double to = from + length * part / parts;
+      for (; turn != turns.end() && *turn < to; ++turn) add(*turn - beside), add(*turn + beside);
+      part < parts ? add(to) : s.push_back(grid[k + 1]);
+    }
+  }
+  return Eigen::Map<const VectorXd>(s.data(), static_cast<Index>(s.size()));
+}
 
 /// Points of the pieces from knot `first` to knot `last`. Towards stops they lie quadratically
 /// denser: there speed grows with the root of the way.
@@ -44,7 +75,7 @@ VectorXd gridOf(const Path& path, Index first, Index last, Index points) {
       s.push_back(i == count ? path.knots()[k + 1] : from + share * length);
     }
   }
-  return Eigen::Map<const VectorXd>(s.data(), static_cast<Index>(s.size()));
+  return dividedAtBends(path, s);
 }
 
 /// Numbers of the knots at which sections begin and end.
@@ -58,9 +89,11 @@ std::vector<Index> borders(const Path& path) {
   return result;
 }
 
-constexpr double kAllowed = 1e-3;  // above a limit between points, share of it
+constexpr double kAllowed = 1e-3;   // above a limit between points, share of it
+constexpr double kLongest = 600.0;  // s, of motions with limits of jerk
 constexpr int kRefinements = 10;
-constexpr int kTries = 2;  // finer grids before a path is refused
+constexpr Index kMostFiner = 16;  // times as many points as before refinements
+constexpr int kTries = 2;         // finer grids before a path is refused
 constexpr Index kParts = 4;
 
 /// The grid with intervals split within which limits are passed: friction, or how fast a joint may move
@@ -87,7 +120,7 @@ double overload(const InverseDynamicsSolver& solver, const Trajectory& motion,
     if (k < grid.size() && grid[k] > grid[k - 1]) continue;
     const PathDynamics dynamics(solver, motion.path(), grid.segment(first, k - first), limits,
                                 margin);
-    const double over = dynamics.excess(z.segment(first, k - first)).maxCoeff(&at);
+    const double over = dynamics.excess(z.segment(first, k - first), true).maxCoeff(&at);
     if (over > worst) worst = over, s = dynamics.s(at);
     first = k;
   }
@@ -98,6 +131,9 @@ double overload(const InverseDynamicsSolver& solver, const Trajectory& motion,
 Retimed withoutJerk(const InverseDynamicsSolver& solver, const Trajectory& motion,
                     const MotionLimits& limits, double margin) {
   constexpr double kSlower = 1.01, kSlowest = 4.0;
+  if (motion.duration() > kLongest) {
+    return {{}, {Refusal::Reason::kTooSlow, 0.0, -1, motion.duration()}};
+  }
   const Trajectory smooth = smoothJerk(motion, limits.jerk);
   double s = 0.0;
   for (double factor = 1.0; factor < kSlowest; factor *= kSlower) {
@@ -116,13 +152,14 @@ Retimed withJerk(const InverseDynamicsSolver& solver, const Path& path, const Mo
     const bool first = section == 0, last = section + 2 == knots.size();
     const double start = first ? options.start_speed : 0.0, end = last ? options.end_speed : 0.0;
     VectorXd grid = gridOf(path, knots[section], knots[section + 1], options.points), finer, z;
+    const Index most = kMostFiner * grid.size();
     for (int round = 0;; ++round) {
       const PathDynamics dynamics(solver, path, grid, limits, options.margin);
       PhasePlane plane(dynamics);
       if (plane.solve(start * start, end * end)) {
         z = plane.z();
         finer = refined(grid, dynamics.excess(z));
-        if (finer.size() == 0 || round == kRefinements) break;
+        if (finer.size() == 0 || finer.size() > most || round == kRefinements) break;
       } else {
         // Intervals that are too coarse may leave no way where finer ones do.
         if (plane.refusal().reason != Refusal::Reason::kNoWayOn || round == kTries) {
@@ -161,6 +198,10 @@ Retimed fastestWithoutJerk(const InverseDynamicsSolver& solver, const Trajectory
     }
     Retimed motion = withJerk(solver, fastest.path(), softer, options);
     if (motion) motion = withoutJerk(solver, motion.trajectory, limits, options.margin);
+    if (motion.refusal.reason == Refusal::Reason::kTooSlow) {  // slower ones are as well
+      if (!best) best = std::move(motion);
+      return kWorse;
+    }
     const double share =
         motion && best ? motion.trajectory.duration() / best.trajectory.duration() : 1.0;
     if (!best || share < kSame)
@@ -221,6 +262,13 @@ std::string text(const Refusal& refusal, const std::vector<std::string>& joint_n
     case Refusal::Reason::kStartTooFast:
       return "the start's speed is too high: expected ds/dt of at most " + number(refusal.missing) +
              "; start slower";
+    case Refusal::Reason::kEndTooFast:
+      return "the end's speed is too high: expected ds/dt of at most " + number(refusal.missing) +
+             "; end slower";
+    case Refusal::Reason::kTooSlow:
+      return "within the limits the motion takes " + number(refusal.missing) +
+             " s: with limits of jerk, expected at most " + number(kLongest) +
+             " s; raise the limits, or divide the path";
   }
   return {};
 }

@@ -79,20 +79,58 @@ struct Peaks {
   double jerk = 0.0;
 };
 
+/// Joint accelerations of a motion in its intervals; it rests before the first and after the last.
+class Accelerations {
+ public:
+  explicit Accelerations(const Trajectory& motion)
+      : motion_(motion), q_(motion.path().jointCount()), dq_(q_), qdd_(q_) {}
+
+  /// At a share of interval k: 0 is after its first point, 1 before its last one.
+  const VectorXd& at(Index k, double share) {
+    const auto &time = motion_.time(), &speed = motion_.speed();
+    if (k < 0 || k + 1 >= time.size()) return qdd_.setZero();
+    const double u = (speed[k + 1] - speed[k]) / (time[k + 1] - time[k]);
+    const double dt = share * (time[k + 1] - time[k]), v = speed[k] + u * dt;
+    const double s = share < 1.0 ? motion_.s()[k] + (speed[k] + v) / 2 * dt : motion_.s()[k + 1];
+    motion_.path().evaluate(s, q_, dq_, qdd_, share == 1.0);
+    return qdd_ = qdd_ * (v * v) + dq_ * u;
+  }
+
+ private:
+  const Trajectory& motion_;
+  VectorXd q_, dq_, qdd_;
+};
+
+/// Jerk is that over kStep, of a motion with intervals of kStep or little more. Between points of the
+/// grid and knots of the path acceleration is about linear in time, so its greatest change over an
+/// interval begins or ends at one of them.
 Peaks peaksOf(const Trajectory& motion, const Eigen::Ref<const VectorXd>& limit) {
-  const Index n = limit.size();
-  VectorXd q(n), qd(n), before(VectorXd::Zero(n)), qdd(n);
+  constexpr int kBentParts = 8;  // of an interval with a knot
+  const auto &time = motion.time(), &s = motion.s(), &knots = motion.path().knots();
+  Accelerations accelerations(motion);
+  VectorXd begin = VectorXd::Zero(limit.size()), end = begin, change = begin;
   Peaks most;
-  const auto raise = [&limit](double& peak, const VectorXd& values) {
-    peak = std::max(peak, (values.cwiseAbs().array() / limit.array()).maxCoeff());
+  const auto raise = [&limit](double& peak, const VectorXd& values, double share) {
+    peak = std::max(peak, share * (values.cwiseAbs().array() / limit.array()).maxCoeff());
   };
-  const auto steps = static_cast<Index>(std::ceil(motion.duration() / kStep));
-  for (Index i = 0; i <= steps; ++i) {
-    motion.evaluate((static_cast<double>(i) + 0.5) * kStep, q, qd, qdd);
-    if (i == steps) qdd.setZero();  // it stands
-    raise(most.acceleration, qdd);
-    raise(most.jerk, (qdd - before) / kStep);
-    before = qdd;
+  Index knot = 0, before = -1;  // the interval before: not that of a stop
+  bool bent = false;            // whether it has a knot
+  for (Index k = 0; k < time.size(); ++k) {
+    const bool last = k + 1 == time.size();
+    if (!last && time[k + 1] == time[k]) continue;
+    const double per_second = 1 / (last ? kStep : std::min(time[k + 1] - time[k], kStep));
+    raise(most.jerk, change = accelerations.at(k, 0.0) - begin, per_second);
+    raise(most.acceleration, begin += change, 1.0);
+    raise(most.jerk, change = accelerations.at(k, 1.0) - end, per_second);
+    raise(most.acceleration, end += change, 1.0);
+    while (knot < knots.size() && knots[knot] <= s[k]) ++knot;
+    const bool bends = !last && knots[knot] < s[k + 1];
+    for (int part = 1; part < kBentParts && (bends || bent); ++part) {
+      const double share = static_cast<double>(part) / kBentParts;
+      change = -accelerations.at(before, share);
+      raise(most.jerk, change += accelerations.at(k, share), per_second);
+    }
+    before = k, bent = bends;
   }
   return most;
 }
@@ -123,6 +161,14 @@ void Trajectory::evaluate(double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd>
   path_->evaluate(s, q, qd, qdd, s == s_[k + 1]);
   qdd = qdd * (speed * speed) + qd * u;
   qd *= speed;
+}
+
+chain_dynamics::OwnedVector sampleTimes(double duration, double rate) {
+  const auto steps = std::max<Index>(static_cast<Index>(std::ceil(duration * rate - 0.5)), 1);
+  chain_dynamics::OwnedVector times(steps + 1);
+  for (Index k = 0; k < steps; ++k) times[k] = static_cast<double>(k) / rate;
+  times[steps] = duration;
+  return times;
 }
 
 double accelerationTime(const Trajectory& motion, const Eigen::Ref<const VectorXd>& jerk) {

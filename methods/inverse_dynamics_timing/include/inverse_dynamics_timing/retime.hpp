@@ -74,11 +74,14 @@ struct Refusal {
     kTorqueAtRest,  ///< a joint can't hold the robot at `s`, where it rests, or where no speed helps
     kNoWayOn,       ///< each speed at `s` leads where limits can't be kept
     kStartTooFast,  ///< the start's speed is beyond what limits allow
+    kEndTooFast,    ///< the end's speed is
+    kTooSlow,       ///< with limits of jerk, a motion longer than 600 s
   };
   Reason reason = Reason::kNone;
   double s = 0.0;           ///< where, parameter of the path
   Eigen::Index joint = -1;  ///< which joint lacks torque
-  double missing = 0.0;     ///< how much, N m; kStartTooFast: the greatest speed that is possible
+  double missing =
+      0.0;  ///< how much, N m; of speeds the greatest possible one, ds/dt; of kTooSlow s
 };
 
 /// Text of a refusal, with the joint's name; empty: none.

@@ -47,6 +47,14 @@ class Trajectory {
   chain_dynamics::OwnedVector time_, s_, speed_;
 };
 
+/// Times at which a motion is sampled for a controller, s: 0, 1 / rate, 2 / rate, ..., duration.
+///
+/// They rise strictly: the last step takes half a period to one and a half, and one step is all of a
+/// motion that is shorter.
+///
+/// @param duration,rate  > 0; s, Hz.
+chain_dynamics::OwnedVector sampleTimes(double duration, double rate);
+
 /// The motion with joint jerks within limits: its speed is averaged over a span of time, which is as
 /// short as the limits allow, and then slowed where the path's own bends need it.
 ///
