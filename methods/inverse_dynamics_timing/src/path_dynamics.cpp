@@ -246,6 +246,7 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
   checkLimit(solver, "velocity", limits.velocity);
   checkLimit(solver, "acceleration", limits.acceleration);
   checkLimit(solver, "jerk", limits.jerk);
+  checkLimit(solver, "torque_rate", limits.torque_rate);
   checkLimit(solver, "knee_velocity", limits.knee_velocity);
   checkLimit(solver, "no_load_velocity", limits.no_load_velocity);
   const bool kinematics = dynamic_cast<const ids::Kinematics*>(&solver) != nullptr;
@@ -271,7 +272,9 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
       {speed(options.start_speed), "options.start_speed", "finite, >= 0",
        text(options.start_speed)},
       {speed(options.end_speed), "options.end_speed", "finite, >= 0", text(options.end_speed)},
-      {limits.jerk.size() == 0 || options.start_speed + options.end_speed == 0.0, "limits.jerk",
+      {limits.jerk.size() + limits.torque_rate.size() == 0 ||
+           options.start_speed + options.end_speed == 0.0,
+       limits.jerk.size() > 0 ? "limits.jerk" : "limits.torque_rate",
        "none, or start and end at rest", text(options.start_speed + options.end_speed)},
   };
   for (const auto& rule : rules) {

@@ -12,6 +12,7 @@
 
 #include "path_dynamics.hpp"
 #include "phase_plane.hpp"
+#include "smoothing.hpp"
 
 namespace inverse_dynamics_timing {
 inline namespace v2 {
@@ -127,14 +128,21 @@ double overload(const InverseDynamicsSolver& solver, const Trajectory& motion,
   return worst;
 }
 
-/// The motion with its jerk in limits, and then as slow as torques demand.
-Retimed withoutJerk(const InverseDynamicsSolver& solver, const Trajectory& motion,
-                    const MotionLimits& limits, double margin) {
+/// The motion with its changes in limits, and then as slow as torques demand.
+Retimed withoutJumps(const InverseDynamicsSolver& solver, const Trajectory& motion,
+                     const MotionLimits& limits, const VectorXd& jerk, double margin) {
   constexpr double kSlower = 1.01, kSlowest = 4.0;
-  if (motion.duration() > kLongest) {
-    return {{}, {Refusal::Reason::kTooSlow, 0.0, -1, motion.duration()}};
+  const auto too_slow = [](const Trajectory& slow) {
+    return Retimed{{}, {Refusal::Reason::kTooSlow, 0.0, -1, slow.duration()}};
+  };
+  if (motion.duration() > kLongest) return too_slow(motion);
+  Change fastest;
+  const Trajectory smooth = smoothed(solver, motion, limits, jerk, kLongest, fastest);
+  if (smooth.duration() > kLongest) return too_slow(smooth);
+  if (fastest.share > 1.0 && fastest.joint >= 0) {
+    const double rate = fastest.share * limits.torque_rate[fastest.joint];
+    return {{}, {Refusal::Reason::kRateTooLow, fastest.s, fastest.joint, rate}};
   }
-  const Trajectory smooth = smoothJerk(motion, limits.jerk);
   double s = 0.0;
   for (double factor = 1.0; factor < kSlowest; factor *= kSlower) {
     Trajectory slower = slowed(smooth, factor);
@@ -143,9 +151,25 @@ Retimed withoutJerk(const InverseDynamicsSolver& solver, const Trajectory& motio
   return {{}, {Refusal::Reason::kNoWayOn, s, -1, 0.0}};
 }
 
-/// The fastest motion, whatever its jerk.
-Retimed withJerk(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
-                 const RetimeOptions& options) {
+/// About the jerks that limits of jerk and of the torques' rates allow, n.
+VectorXd typicalJerk(const InverseDynamicsSolver& solver, const Path& path,
+                     const MotionLimits& limits) {
+  constexpr double kMost = 1e9;  // rad/s^3
+  constexpr int kPlaces = 20;
+  const Index n = path.jointCount();
+  VectorXd jerk = VectorXd::Constant(n, kMost), q(n), dq(n), ddq(n), inertia = VectorXd::Zero(n);
+  if (limits.jerk.size() > 0) jerk = limits.jerk;
+  if (limits.torque_rate.size() == 0) return jerk;
+  for (int i = 0; i <= kPlaces; ++i) {
+    path.evaluate(path.start() + (path.end() - path.start()) * i / kPlaces, q, dq, ddq);
+    inertia = inertia.cwiseMax(solver.getInertiaMatrix(q).diagonal().cwiseAbs());
+  }
+  return jerk.cwiseMin((limits.torque_rate.array() / inertia.array()).matrix());
+}
+
+/// The fastest motion, whatever its jerk and torque rates.
+Retimed withJumps(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
+                  const RetimeOptions& options) {
   const std::vector<Index> knots = borders(path);
   std::vector<double> s, speed;
   for (std::size_t section = 0; section + 1 < knots.size(); ++section) {
@@ -178,27 +202,27 @@ Retimed withJerk(const InverseDynamicsSolver& solver, const Path& path, const Mo
           {}};
 }
 
-/// The fastest of the motions with jerk in limits whose accelerations, before they are averaged, the
-/// joints reach within one time: the longer it is, the longer is the span of averaging.
-Retimed fastestWithoutJerk(const InverseDynamicsSolver& solver, const Trajectory& fastest,
-                           const MotionLimits& limits, const RetimeOptions& options) {
+/// The fastest of the motions without jumps whose accelerations, before they are averaged, the joints
+/// reach within one time: the longer it is, the longer is the span of averaging.
+Retimed fastestWithoutJumps(const InverseDynamicsSolver& solver, const Trajectory& fastest,
+                            const MotionLimits& limits, const RetimeOptions& options) {
   constexpr double kWorse = 2.0, kSame = 1.001, kLeastStep = 1.1;
   constexpr int kHalvings = 30;
+  const VectorXd jerk = typicalJerk(solver, fastest.path(), limits);
   Retimed best{{}, {Refusal::Reason::kNoWayOn, 0.0, -1, 0.0}};
   // About 2.5 times the best time of a motion that is all acceleration, or one that limits nothing.
-  const double duration = fastest.duration(),
-               limitless = 2 * accelerationTime(fastest, limits.jerk);
+  const double duration = fastest.duration(), limitless = 2 * accelerationTime(fastest, jerk);
   double time = std::min(std::cbrt(duration * duration * limitless), limitless), best_time = time;
   // How long the motion with another time takes, as a share of the best one.
   const auto attempt = [&](double reached) {
     MotionLimits softer = limits;
-    softer.acceleration = reached * limits.jerk;
+    softer.acceleration = reached * jerk;
     if (limits.acceleration.size() > 0) {
       softer.acceleration = softer.acceleration.cwiseMin(limits.acceleration).eval();
     }
-    Retimed motion = withJerk(solver, fastest.path(), softer, options);
-    if (motion) motion = withoutJerk(solver, motion.trajectory, limits, options.margin);
-    if (motion.refusal.reason == Refusal::Reason::kTooSlow) {  // slower ones are as well
+    Retimed motion = withJumps(solver, fastest.path(), softer, options);
+    if (motion) motion = withoutJumps(solver, motion.trajectory, limits, jerk, options.margin);
+    if (motion.refusal.reason >= Refusal::Reason::kTooSlow) {  // slower ones are refused as well
       if (!best) best = std::move(motion);
       return kWorse;
     }
@@ -222,9 +246,9 @@ Retimed fastestWithoutJerk(const InverseDynamicsSolver& solver, const Trajectory
 Retimed retime(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
                const RetimeOptions& options) {
   check(solver, path, limits, options);
-  Retimed fastest = withJerk(solver, path, limits, options);
-  if (!fastest || limits.jerk.size() == 0) return fastest;
-  return fastestWithoutJerk(solver, fastest.trajectory, limits, options);
+  Retimed fastest = withJumps(solver, path, limits, options);
+  if (!fastest || limits.jerk.size() + limits.torque_rate.size() == 0) return fastest;
+  return fastestWithoutJumps(solver, fastest.trajectory, limits, options);
 }
 
 chain_dynamics::OwnedVector speedLimit(const InverseDynamicsSolver& solver,
@@ -267,8 +291,15 @@ std::string text(const Refusal& refusal, const std::vector<std::string>& joint_n
              "; end slower";
     case Refusal::Reason::kTooSlow:
       return "within the limits the motion takes " + number(refusal.missing) +
-             " s: with limits of jerk, expected at most " + number(kLongest) +
+             " s: with limits of jerk or torque rate, expected at most " + number(kLongest) +
              " s; raise the limits, or divide the path";
+    case Refusal::Reason::kRateTooLow:
+      return place + " the torque of joint " +
+             joint_names[static_cast<std::size_t>(refusal.joint)] + " changes by " +
+             number(refusal.missing) +
+             " N m/s, however slow the motion is: friction steps there; raise the limit of its "
+             "rate, or "
+             "use a model whose friction rises smoothly";
   }
   return {};
 }

@@ -402,6 +402,51 @@ TEST(Retime, TorquesStayWithinLimitsWithJerkLimitsThatHardlyMatter) {
   }
 }
 
+TEST(Retime, TorqueRatesStayWithinTheirLimits) {
+  const auto solver = identified("franka_inria_identified.yaml");
+  const Path path = Path::spline(randomWaypoints(7, 2));
+  MotionLimits limits;
+  limits.torque = pandaTorques();
+  const double fastest = retime(*solver, path, limits).trajectory.duration();
+  limits.torque_rate = VectorXd::Constant(7, 1000.0);
+  const Retimed smooth = retime(*solver, path, limits);
+  ASSERT_TRUE(smooth) << text(smooth.refusal, solver->jointNames());
+  const Trajectory& motion = smooth.trajectory;
+  EXPECT_GT(motion.duration(), fastest);
+  EXPECT_LT(motion.duration(), 2 * fastest);
+  EXPECT_LT(greatestUse(*solver, motion, limits.torque), 1.003);
+  VectorXd q(7), qd(7), qdd(7);
+  for (double t = 0.0; t < motion.duration() - 1e-3; t += 1e-4) {
+    motion.evaluate(t, q, qd, qdd);
+    const VectorXd before = solver->getTorques(q, qd, qdd);
+    motion.evaluate(t + 1e-3, q, qd, qdd);
+    const VectorXd after = solver->getTorques(q, qd, qdd);
+    ASSERT_LT((after - before).cwiseAbs().maxCoeff() / 1e-3, 1000.0 * 1.003) << t;
+  }
+}
+
+TEST(Retime, TorqueRatesOfAMassAreItsJerks) {
+  const auto solver = slider();  // 2 kg
+  const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
+  MotionLimits jerks, rates;
+  jerks.torque = rates.torque = VectorXd::Constant(1, 10.0);
+  jerks.jerk = VectorXd::Constant(1, 20.0), rates.torque_rate = VectorXd::Constant(1, 40.0);
+  EXPECT_NEAR(retime(*solver, path, rates).trajectory.duration(),
+              retime(*solver, path, jerks).trajectory.duration(), 1e-9);
+}
+
+TEST(Retime, FrictionThatStepsFasterThanATorqueMayIsNamed) {
+  const auto solver = identifiedWith("ur10_identified.yaml", [](chain_dynamics::Model& model) {
+    model.friction.assign(6, chain_dynamics::ViscousCoulombOffset{5, 10, 2});
+  });
+  MotionLimits limits;
+  limits.torque = ur10Torques(), limits.torque_rate = VectorXd::Constant(6, 1000.0);
+  const Retimed none = retime(*solver, Path::spline(randomWaypoints(6, 1)), limits);
+  EXPECT_EQ(none.refusal.reason, Refusal::Reason::kRateTooLow);
+  EXPECT_GT(none.refusal.missing, 1e4);  // 10 N m within 1 ms
+  EXPECT_THAT(text(none.refusal, solver->jointNames()), HasSubstr("friction steps there"));
+}
+
 TEST(Retime, MotionsWithJerkLimitsThatTakeTooLongAreRefused) {
   const auto solver = slider();
   const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
@@ -447,6 +492,8 @@ TEST(SampleTimes, RiseStrictlyWithALastStepOfHalfAPeriodAtLeast) {
     }
   }
   EXPECT_EQ(sampleTimes(1e-4, kRate), VectorXd(Eigen::Vector2d(0.0, 1e-4)));
+  EXPECT_THAT([] { sampleTimes(1e5, kRate); },
+              refused("rate: expected at most 10 Hz for a motion of 1e+05 s"));
 }
 
 TEST(Retime, SpeedLimitIsAboveTheSpeed) {
@@ -503,7 +550,12 @@ TEST(Retime, RefusesWrongLimitsAndOptions) {
                 limits.jerk = VectorXd::Ones(1), options.start_speed = 0.1;
               }),
               refused("at rest"));
+  EXPECT_THAT(with([](L& limits, O& options) {
+                limits.torque_rate = VectorXd::Ones(1), options.end_speed = 0.1;
+              }),
+              refused("limits.torque_rate"));
   EXPECT_THAT(with([](L&, O& options) { options.points = 1; }), refused("points"));
+  EXPECT_THAT(with([](L&, O& options) { options.points = 2000000; }), refused("1000000"));
   EXPECT_THAT(with([](L&, O& options) { options.margin = 1; }), refused("margin"));
   EXPECT_THAT(with([](L&, O& options) { options.end_speed = -1; }), refused("end_speed"));
   EXPECT_THROW(with([](L& limits, O&) { limits.jerk = VectorXd::Ones(2); })(),

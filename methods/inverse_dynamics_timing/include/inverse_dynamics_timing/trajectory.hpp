@@ -53,19 +53,8 @@ class Trajectory {
 /// motion that is shorter.
 ///
 /// @param duration,rate  > 0; s, Hz.
+/// @throws inverse_dynamics_solver::InvalidParameterValueException  more than a million samples.
 chain_dynamics::OwnedVector sampleTimes(double duration, double rate);
-
-/// The motion with joint jerks within limits: its speed is averaged over a span of time, which is as
-/// short as the limits allow, and then slowed where the path's own bends need it.
-///
-/// The path stays the same. Averaged states lie between those of the motion, so its torques pass their
-/// limits only as far as H, C and g change within the span; retime() then slows the motion.
-///
-/// @param jerk  n, > 0, rad/s^3: of `qdd` over 1 ms.
-Trajectory smoothJerk(const Trajectory& motion, const Eigen::Ref<const Eigen::VectorXd>& jerk);
-
-/// The time in which the joints reach the motion's greatest accelerations with these jerks, s.
-double accelerationTime(const Trajectory& motion, const Eigen::Ref<const Eigen::VectorXd>& jerk);
 
 /// The motion slower by a factor >= 1, the same along the whole path.
 Trajectory slowed(const Trajectory& motion, double factor);
