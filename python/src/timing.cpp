@@ -94,6 +94,7 @@ void bindTiming(py::module_& module) {
       Field{"velocity", &L::velocity, "(n,) rad/s."},
       Field{"acceleration", &L::acceleration, "(n,) rad/s^2."},
       Field{"jerk", &L::jerk, "(n,) rad/s^3."},
+      Field{"torque_rate", &L::torque_rate, "(n,) N m/s."},
       Field{"knee_velocity", &L::knee_velocity, "(n,) rad/s, above which a motor's torque falls."},
       Field{"no_load_velocity", &L::no_load_velocity,
             "(n,) rad/s, at which a motor has none left."},
