@@ -290,7 +290,7 @@ std::string text(const Refusal& refusal, const std::vector<std::string>& joint_n
       return "the end's speed is too high: expected ds/dt of at most " + number(refusal.missing) +
              "; end slower";
     case Refusal::Reason::kTooSlow:
-      return "within the limits the motion takes " + number(refusal.missing) +
+      return "within the limits the motion takes at least " + number(refusal.missing) +
              " s: with limits of jerk or torque rate, expected at most " + number(kLongest) +
              " s; raise the limits, or divide the path";
     case Refusal::Reason::kRateTooLow:

@@ -456,7 +456,7 @@ TEST(Retime, MotionsWithJerkLimitsThatTakeTooLongAreRefused) {
   limits.velocity = VectorXd::Constant(1, 1e-5);
   const Retimed slow = retime(*solver, path, limits);
   EXPECT_EQ(slow.refusal.reason, Refusal::Reason::kTooSlow);
-  EXPECT_THAT(text(slow.refusal, solver->jointNames()), HasSubstr("takes 2e+05 s"));
+  EXPECT_THAT(text(slow.refusal, solver->jointNames()), HasSubstr("takes at least 2e+05 s"));
 }
 
 // The shortest time of a way d is (32 d / j)^(1/3).

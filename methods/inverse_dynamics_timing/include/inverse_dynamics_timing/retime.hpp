@@ -61,7 +61,7 @@ struct MotionLimits {
 };
 
 struct RetimeOptions {
-  Eigen::Index points = 1000;  ///< of the grid, about; each polynomial piece has a few at least
+  Eigen::Index points = 1000;  ///< of the grid, about; there are more where the path bends
   double start_speed = 0.0;    ///< ds/dt at the path's start, >= 0
   double end_speed = 0.0;      ///< at its end
   /// Share of the measured torques that shall be within the limits, for solvers whose model states
