@@ -75,15 +75,9 @@ Trajectory averaged(const Trajectory& motion, double span) {
           Eigen::Map<const VectorXd>(speed.data(), count)};
 }
 
-/// The greatest acceleration and jerk of a joint, each over the joint's limit of jerk.
-struct Peaks {
-  double acceleration = 0.0;  // s
-  double jerk = 0.0;
-};
-
-/// States of an averaged motion, one per column: at rest, at both ends of each interval, and at rest. Between
-/// points of the grid and knots of the path accelerations are about linear in time, so the greatest change
-/// over an interval begins or ends at one of them: near knots, intervals have more states.
+/// States of an averaged motion, one per column: at rest, at both ends of each interval, and at rest.
+/// Between points of the grid and knots of the path accelerations are about linear in time, so the
+/// greatest change over kStep begins or ends at one of them: near knots, intervals have more states.
 struct States {
   std::vector<Index> intervals;  // those that take time
   std::vector<Index> first;      // of each: the number of its first state

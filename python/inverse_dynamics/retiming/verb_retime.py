@@ -54,8 +54,8 @@ def declare(options: Options) -> None:
     way.add("--stops K,K,...", "waypoints to stand still at, from 0", whole_numbers)
     way.add(
         "--start-speed SPEED",
-        "rad/s at its start, as far as the way from waypoint to waypoint grows: on straight lines the "
-        "root of the sum of squares over the joints (default: 0)",
+        "at its start, rad/s of the way from waypoint to waypoint: on straight lines the root of the sum of "
+        "squares over the joints (default: 0)",
         _distance,
     )
     way.add("--end-speed SPEED", "and at its end", _distance)
