@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import FastModel as FastModel
     from inverse_dynamics._core import JointPath as JointPath
     from inverse_dynamics._core import MotionLimits as MotionLimits
+    from inverse_dynamics._core import RetimeOptions as RetimeOptions
     from inverse_dynamics._core import Solver as Solver
     from inverse_dynamics._core import available_solvers as available_solvers
     from inverse_dynamics.contacts.contacts import Contacts as Contacts
@@ -78,7 +79,9 @@ if TYPE_CHECKING:
     from inverse_dynamics.simulation.run import simulate as simulate
 
 _MODULES = {  # and the names that users know
-    "_core": ("FastModel", "JointPath", "MotionLimits", "Solver", "available_solvers"),
+    "_core": (
+        *("FastModel", "JointPath", "MotionLimits", "RetimeOptions", "Solver", "available_solvers"),
+    ),
     "contacts.contacts": ("Contacts", "find_contacts"),
     "diagnosis.diagnose": ("diagnose",),
     "errors": ("UserError",),

@@ -84,6 +84,9 @@ JointPath)")
       .def_property_readonly(
           "stops", [](const Path& path) { return arrayOf(path.stops()); },
           "s where the robot stands still on its way.")
+      .def_property_readonly(
+          "position_ranges", [](const Path& path) { return rowsOf(path.positionRanges()); },
+          "(2, n) the least and the greatest position of each joint.")
       .def(
           "states",
           [](const Path& path, const Eigen::VectorXd& s) {
@@ -140,6 +143,7 @@ void bindTiming(py::module_& module) {
       Field{"velocity", &L::velocity, "(n,) rad/s."},
       Field{"acceleration", &L::acceleration, "(n,) rad/s^2."},
       Field{"jerk", &L::jerk, "(n,) rad/s^3."},
+      Field{"torque_rate", &L::torque_rate, "(n,) N m/s."},
       Field{"knee_velocity", &L::knee_velocity, "(n,) rad/s, above which a motor's torque falls."},
       Field{"no_load_velocity", &L::no_load_velocity,
             "(n,) rad/s, at which a motor has none left."},
@@ -189,7 +193,33 @@ tuple of three ndarray, (N, n) each
           [](const py::tuple& state) {
             return T(state[0].cast<Path>(), state[1].cast<Eigen::VectorXd>(),
                      state[2].cast<Eigen::VectorXd>());
-          }));
+          }))
+      .def("slowed", &slowed, "factor"_a, R"(The same motion, slower.
+
+Parameters
+----------
+factor : float
+    At least 1: of the duration.
+
+Returns
+-------
+TimedPath)");
+  module.def(
+      "sample_times",
+      [](double duration, double rate) { return arrayOf(sampleTimes(duration, rate)); },
+      "duration"_a, "rate"_a, R"(0, 1 / rate, ..., duration; the last step is half a period at least.
+
+Parameters
+----------
+duration : float
+    s.
+rate : float
+    Hz.
+
+Returns
+-------
+ndarray, (N,)
+    s, rising.)");
   module.def("retime_path", &retimed, "solver"_a, "path"_a, "limits"_a, "options"_a = O(),
              "The fastest motion along a path within limits: TimedPath.");
   module.def(

@@ -2,6 +2,7 @@
 #include "inverse_dynamics_timing/path.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
@@ -95,6 +96,43 @@ struct Corner {
   double reach = 0.0;
   bool stop = false;
 };
+
+/// A polynomial of powers of x, at most of fourth degree.
+struct Polynomial {
+  std::array<double, 5> c;
+  std::size_t terms;
+
+  double operator()(double x) const {
+    double value = 0.0;
+    for (std::size_t i = terms; i-- > 0;) value = value * x + c[i];
+    return value;
+  }
+};
+
+/// Appends where the polynomial changes its sign between 0 and h, rising.
+void findSignChanges(Polynomial f, double h, std::vector<double>& found) {
+  constexpr int kHalvings = 24;  // an extreme is known to the square of 2^-24
+  while (f.terms > 0 && f.c[f.terms - 1] == 0.0) --f.terms;
+  if (f.terms < 2) return;
+  Polynomial slope{{}, f.terms - 1};
+  for (std::size_t i = 1; i < f.terms; ++i) slope.c[i - 1] = static_cast<double>(i) * f.c[i];
+  // Between its extremes it rises or falls throughout.
+  std::vector<double> extremes;
+  findSignChanges(slope, h, extremes);
+  extremes.push_back(h);
+  double from = 0.0;
+  for (const double to : extremes) {
+    double low = from, high = to;
+    from = to;
+    const bool negative = f(low) < 0.0;
+    if (negative == (f(high) < 0.0)) continue;
+    for (int halving = 0; halving < kHalvings; ++halving) {
+      const double middle = (low + high) / 2;
+      ((f(middle) < 0.0) == negative ? low : high) = middle;
+    }
+    found.push_back(high);
+  }
+}
 
 // The middle of the curve is 3/16 reach |d2 - d1| from the corner.
 constexpr double kCornerDistance = 3.0 / 16.0;
@@ -228,6 +266,35 @@ Path Path::function(const Function& evaluate, Index joints,
     q0 = q1, v0 = v1, a0 = a1;
   }
   return path;
+}
+
+std::vector<double> Path::turningPoints() const {
+  std::vector<double> all, found;
+  for (Index k = 0; k + 1 < knots_.size(); ++k) {
+    const auto c = coefficients_.middleCols(kTerms * k, kTerms);
+    found.clear();
+    for (Index j = 0; j < c.rows(); ++j) {
+      const Polynomial slope{{c(j, 1), 2 * c(j, 2), 3 * c(j, 3), 4 * c(j, 4), 5 * c(j, 5)}, 5};
+      findSignChanges(slope, knots_[k + 1] - knots_[k], found);
+    }
+    std::sort(found.begin(), found.end());
+    for (const double x : found) all.push_back(knots_[k] + x);
+  }
+  return all;
+}
+
+chain_dynamics::OwnedMatrix Path::positionRanges() const {
+  std::vector<double> extremes = turningPoints();
+  extremes.insert(extremes.end(), knots_.data(), knots_.data() + knots_.size());
+  VectorXd q(jointCount()), dq(q), ddq(q);
+  MatrixXd ranges(jointCount(), 2);
+  evaluate(start(), q, dq, ddq);
+  ranges.colwise() = q;
+  for (const double s : extremes) {
+    evaluate(s, q, dq, ddq);
+    ranges.col(0) = ranges.col(0).cwiseMin(q), ranges.col(1) = ranges.col(1).cwiseMax(q);
+  }
+  return ranges;
 }
 
 void Path::evaluate(double s, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> dq,

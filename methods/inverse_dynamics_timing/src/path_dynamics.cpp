@@ -31,7 +31,8 @@ VectorXd capOfTip(const InverseDynamicsSolver& solver, const MatrixXd& q, const 
   VectorXd cap(q.cols());
   for (Index k = 0; k < q.cols(); ++k) {
     kinematics.getTipJacobian(q.col(k), J);
-    cap[k] = tip_speed * tip_speed / (J.topRows(3) * dq.col(k)).squaredNorm();
+    const double greatest = tip_speed / (J.topRows(3) * dq.col(k)).norm();  // ds/dt
+    cap[k] = greatest * greatest;
   }
   return cap;
 }
@@ -142,30 +143,35 @@ void PathDynamics::room(Index k, double z, Room& room) const {
   }
 }
 
-int PathDynamics::parts(Index k) const {
+const std::vector<double>& PathDynamics::between(Index k, bool rests) const {
+  static const std::vector<double> middle{0.5}, bend{0.25, 0.5, 0.75},
+      step{1.0 / 64, 1.0 / 16, 0.25, 0.5, 0.75, 15.0 / 16, 63.0 / 64};
   const auto here = dq_.col(k).array(), next = dq_.col(k + 1).array();
-  if ((here.abs().min(next.abs()) < (next - here).abs()).any()) return 8;
+  if (rests || (here.abs().min(next.abs()) < (next - here).abs()).any()) return step;
   constexpr double kBend = 0.03;  // of q', relative
-  return (next - here).square().sum() < kBend * kBend * here.square().sum() ? 2 : 4;
+  const bool bends = (next - here).square().sum() >= kBend * kBend * here.square().sum();
+  return bends ? bend : middle;
 }
 
-VectorXd PathDynamics::excess(const Eigen::Ref<const VectorXd>& z) const {
+VectorXd PathDynamics::excess(const Eigen::Ref<const VectorXd>& z, bool at_ends) const {
   struct Place {
     Index k;
     double share;
   };
   std::vector<Place> places;
+  places.reserve(static_cast<std::size_t>(4 * points()));
   for (Index k = 0; k + 1 < points(); ++k) {
-    const int count = parts(k);
-    for (int part = 1; part < count; ++part)
-      places.push_back({k, static_cast<double>(part) / count});
+    for (const double share : between(k, z[k] == 0.0 || z[k + 1] == 0.0)) {
+      places.push_back({k, share});
+    }
+    if (at_ends) places.push_back({k, 0.0}), places.push_back({k, 1.0});
   }
   const Index n = g_.rows(), count = static_cast<Index>(places.size());
   MatrixXd q(n, count), qd(n, count), qdd(n, count), tau(n, count);
   for (Index i = 0; i < count; ++i) {
     const auto [k, share] = places[static_cast<std::size_t>(i)];
     const double length = s_[k + 1] - s_[k], here = z[k] + share * (z[k + 1] - z[k]);
-    path_.evaluate(s_[k] + share * length, q.col(i), qd.col(i), qdd.col(i));
+    path_.evaluate(s_[k] + share * length, q.col(i), qd.col(i), qdd.col(i), share == 1.0);
     qdd.col(i) = (z[k + 1] - z[k]) / (2 * length) * qd.col(i) + here * qdd.col(i);
     qd.col(i) *= std::sqrt(here);
   }
@@ -240,6 +246,7 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
   checkLimit(solver, "velocity", limits.velocity);
   checkLimit(solver, "acceleration", limits.acceleration);
   checkLimit(solver, "jerk", limits.jerk);
+  checkLimit(solver, "torque_rate", limits.torque_rate);
   checkLimit(solver, "knee_velocity", limits.knee_velocity);
   checkLimit(solver, "no_load_velocity", limits.no_load_velocity);
   const bool kinematics = dynamic_cast<const ids::Kinematics*>(&solver) != nullptr;
@@ -260,11 +267,14 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
       {limits.tip_speed > 0.0, "limits.tip_speed", "> 0 m/s", text(limits.tip_speed)},
       {std::isinf(limits.tip_speed) || kinematics, "limits.tip_speed",
        "none, or a solver with the capability Kinematics", text(limits.tip_speed)},
-      {options.points >= 2, "options.points", ">= 2", std::to_string(options.points)},
+      {options.points >= 2 && options.points <= 1000000, "options.points", "2 to 1000000",
+       std::to_string(options.points)},
       {speed(options.start_speed), "options.start_speed", "finite, >= 0",
        text(options.start_speed)},
       {speed(options.end_speed), "options.end_speed", "finite, >= 0", text(options.end_speed)},
-      {limits.jerk.size() == 0 || options.start_speed + options.end_speed == 0.0, "limits.jerk",
+      {limits.jerk.size() + limits.torque_rate.size() == 0 ||
+           options.start_speed + options.end_speed == 0.0,
+       limits.jerk.size() > 0 ? "limits.jerk" : "limits.torque_rate",
        "none, or start and end at rest", text(options.start_speed + options.end_speed)},
   };
   for (const auto& rule : rules) {

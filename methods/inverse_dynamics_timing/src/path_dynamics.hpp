@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <vector>
 
 #include "inverse_dynamics_timing/retime.hpp"
 
@@ -40,16 +41,18 @@ class PathDynamics {
   Room emptyRoom() const;
 
   /// Greatest excess over a limit within each interval, as a share of it, with squared speeds z at the
-  /// points: in its middle; at three places where the path bends; at seven where a joint turns back,
-  /// and friction steps.
-  Eigen::VectorXd excess(const Eigen::Ref<const Eigen::VectorXd>& z) const;
+  /// points: in its middle; at three places where the path bends; at seven, towards the ends, where a joint
+  /// turns back or the robot starts or stops, and friction steps.
+  ///
+  /// @param at_ends  look at the ends too: of a motion that wasn't found on this grid.
+  Eigen::VectorXd excess(const Eigen::Ref<const Eigen::VectorXd>& z, bool at_ends = false) const;
 
   /// The joint that lacks most torque to stand still at point k, and how much; -1: none lacks any.
   Eigen::Index weakest(Eigen::Index k, double& missing) const;
 
  private:
-  /// Into how many parts excess() divides interval k.
-  int parts(Eigen::Index k) const;
+  /// Shares of interval k at which excess() looks.
+  const std::vector<double>& between(Eigen::Index k, bool rests) const;
   double torqueLimit(Eigen::Index j, double velocity) const;
 
   const InverseDynamicsSolver& solver_;

@@ -66,17 +66,24 @@ void PhasePlane::addInterval(Index k) {
   }
 }
 
+/// z at point k on the parabola through the next three points, or through those before it (step -1).
+double PhasePlane::extrapolated(const VectorXd& z, Index k, Index step) const {
+  const Index a = k + step, b = a + step, c = b + step;
+  if (c < 0 || c >= dynamics_.points()) return z[a];
+  const auto slope = [&](Index i, Index j) {
+    return (z[j] - z[i]) / (dynamics_.s(j) - dynamics_.s(i));
+  };
+  const double bend = (slope(b, c) - slope(a, b)) / (dynamics_.s(c) - dynamics_.s(a));
+  const double way = dynamics_.s(k) - dynamics_.s(a);
+  return z[a] + way * (slope(a, b) + (dynamics_.s(k) - dynamics_.s(b)) * bend);
+}
+
 /// The greatest or least x at point k from which a y in low_[k + 1] to high_[k + 1] is reached.
 bool PhasePlane::backward(Index k, End end, double& x) {
   const bool greatest = end == End::kGreatest;
   const double cap = std::min(dynamics_.cap(k), kFastest);
   double y = greatest ? high_[k + 1] : low_[k + 1];
-  x = greatest ? std::min(y, cap) : 0.0;
-  if (greatest && k + 2 < dynamics_.points()) {
-    const double step =
-        (dynamics_.s(k + 1) - dynamics_.s(k)) / (dynamics_.s(k + 2) - dynamics_.s(k + 1));
-    x = std::clamp(y + step * (y - high_[k + 2]), 0.0, cap);
-  }
+  x = greatest ? std::clamp(extrapolated(high_, k, 1), 0.0, cap) : 0.0;
   for (int program = 0; program < kPrograms; ++program) {
     look(k, x, here_);
     look(k + 1, y, next_);
@@ -101,8 +108,7 @@ bool PhasePlane::backward(Index k, End end, double& x) {
 double PhasePlane::forward(Index k) {
   const double x = z_[k];
   look(k, x, here_);
-  double y = k == 0 ? x : std::max(x + (x - z_[k - 1]), 0.0);
-  y = std::clamp(y, low_[k + 1], high_[k + 1]);
+  double y = std::clamp(extrapolated(z_, k + 1, -1), low_[k + 1], high_[k + 1]);
   for (int program = 0; program < kPrograms; ++program) {
     look(k + 1, y, next_);
     addInterval(k);
@@ -137,7 +143,20 @@ bool PhasePlane::solve(double start, double end) {
     refusal_.joint = joint, refusal_.missing = missing;
     return false;
   }
-  low_[last] = high_[last] = end;
+  const double most = greatest(last);
+  if ((end == 0.0 || end <= most * (1 + kSame)) && reach(start, end, end)) return true;
+  if (end == 0.0 || refusal_.reason == Refusal::Reason::kStartTooFast) return false;
+  if (!reach(start, 0.0, most)) return false;
+  refuse(last, Refusal::Reason::kEndTooFast);
+  refusal_.missing = std::sqrt(z_[last]);
+  return false;
+}
+
+/// Sets z() from z = start to the greatest z at the end, of those from `least` to `most`.
+bool PhasePlane::reach(double start, double least, double most) {
+  const Index last = dynamics_.points() - 1;
+  low_.setZero();
+  low_[last] = least, high_[last] = most;
   for (Index k = last - 1; k >= 0; --k) {
     if (!backward(k, End::kGreatest, high_[k])) return refuse(k, Refusal::Reason::kNoWayOn);
     const auto here = static_cast<std::size_t>(k);

@@ -30,8 +30,10 @@ class PhasePlane {
   void look(Eigen::Index k, double z, Room& room) const;
   void addLimits(Eigen::Index j, double p, double r, const Room& room, double of_x, double of_y);
   void addInterval(Eigen::Index k);
+  double extrapolated(const Eigen::VectorXd& z, Eigen::Index k, Eigen::Index step) const;
   bool backward(Eigen::Index k, End end, double& x);
   double forward(Eigen::Index k);
+  bool reach(double start, double least, double most);
   bool refuse(Eigen::Index k, Refusal::Reason reason);
 
   const PathDynamics& dynamics_;

@@ -12,6 +12,7 @@
 
 #include "path_dynamics.hpp"
 #include "phase_plane.hpp"
+#include "smoothing.hpp"
 
 namespace inverse_dynamics_timing {
 inline namespace v2 {
@@ -23,6 +24,37 @@ using Eigen::VectorXd;
 
 constexpr Index kLeastOfPiece = 4;  // intervals of each polynomial piece
 constexpr Index kLeastAtStop = 40;  // and of one that begins or ends at rest
+constexpr double kBend = 0.05;      // of q' within an interval, relative
+constexpr double kMostParts = 20;   // into which a bend divides an interval
+constexpr double kBeside = 0.01;    // of an interval
+
+/// The grid with intervals divided where the path bends, and with points on both sides of where a joint
+/// turns back: friction steps there.
+VectorXd dividedAtBends(const Path& path, const std::vector<double>& grid) {
+  const Index n = path.jointCount();
+  VectorXd q(n), here(n), next(n), ddq(n);
+  const std::vector<double> turns = path.turningPoints();
+  auto turn = std::upper_bound(turns.begin(), turns.end(), grid.front());
+  std::vector<double> s{grid.front()};
+  path.evaluate(grid.front(), q, next, ddq);
+  for (std::size_t k = 0; k + 1 < grid.size(); ++k) {
+    const double from = grid[k], length = grid[k + 1] - from;
+    here = next;
+    path.evaluate(grid[k + 1], q, next, ddq, k + 2 == grid.size());
+    const double bend = (next - here).norm() / (kBend * std::max(here.norm(), next.norm()));
+    const double parts = std::ceil(std::clamp(bend, 1.0, kMostParts)),
+                 beside = kBeside * length / parts;
+    const auto add = [&](double at) {
+      if (at > s.back() + beside / 2 && at < grid[k + 1] - beside / 2) s.push_back(at);
+    };
+    for (double part = 1.0; part <= parts; ++part) {
+      const double to = from + length * part / parts;
+      for (; turn != turns.end() && *turn < to; ++turn) add(*turn - beside), add(*turn + beside);
+      part < parts ? add(to) : s.push_back(grid[k + 1]);
+    }
+  }
+  return Eigen::Map<const VectorXd>(s.data(), static_cast<Index>(s.size()));
+}
 
 /// Points of the pieces from knot `first` to knot `last`. Towards stops they lie quadratically
 /// denser: there speed grows with the root of the way.
@@ -44,7 +76,7 @@ VectorXd gridOf(const Path& path, Index first, Index last, Index points) {
       s.push_back(i == count ? path.knots()[k + 1] : from + share * length);
     }
   }
-  return Eigen::Map<const VectorXd>(s.data(), static_cast<Index>(s.size()));
+  return dividedAtBends(path, s);
 }
 
 /// Numbers of the knots at which sections begin and end.
@@ -58,9 +90,11 @@ std::vector<Index> borders(const Path& path) {
   return result;
 }
 
-constexpr double kAllowed = 1e-3;  // above a limit between points, share of it
+constexpr double kAllowed = 1e-3;   // above a limit between points, share of it
+constexpr double kLongest = 600.0;  // s, of motions with limits of jerk
 constexpr int kRefinements = 10;
-constexpr int kTries = 2;  // finer grids before a path is refused
+constexpr Index kMostFiner = 16;  // times as many points as before refinements
+constexpr int kTries = 2;         // finer grids before a path is refused
 constexpr Index kParts = 4;
 
 /// The grid with intervals split within which limits are passed: friction, or how fast a joint may move
@@ -87,18 +121,28 @@ double overload(const InverseDynamicsSolver& solver, const Trajectory& motion,
     if (k < grid.size() && grid[k] > grid[k - 1]) continue;
     const PathDynamics dynamics(solver, motion.path(), grid.segment(first, k - first), limits,
                                 margin);
-    const double over = dynamics.excess(z.segment(first, k - first)).maxCoeff(&at);
+    const double over = dynamics.excess(z.segment(first, k - first), true).maxCoeff(&at);
     if (over > worst) worst = over, s = dynamics.s(at);
     first = k;
   }
   return worst;
 }
 
-/// The motion with its jerk in limits, and then as slow as torques demand.
-Retimed withoutJerk(const InverseDynamicsSolver& solver, const Trajectory& motion,
-                    const MotionLimits& limits, double margin) {
+/// The motion with its changes in limits, and then as slow as torques demand.
+Retimed withoutJumps(const InverseDynamicsSolver& solver, const Trajectory& motion,
+                     const MotionLimits& limits, const VectorXd& jerk, double margin) {
   constexpr double kSlower = 1.01, kSlowest = 4.0;
-  const Trajectory smooth = smoothJerk(motion, limits.jerk);
+  const auto too_slow = [](const Trajectory& slow) {
+    return Retimed{{}, {Refusal::Reason::kTooSlow, 0.0, -1, slow.duration()}};
+  };
+  if (motion.duration() > kLongest) return too_slow(motion);
+  Change fastest;
+  const Trajectory smooth = smoothed(solver, motion, limits, jerk, kLongest, fastest);
+  if (smooth.duration() > kLongest) return too_slow(smooth);
+  if (fastest.share > 1.0 && fastest.joint >= 0) {
+    const double rate = fastest.share * limits.torque_rate[fastest.joint];
+    return {{}, {Refusal::Reason::kRateTooLow, fastest.s, fastest.joint, rate}};
+  }
   double s = 0.0;
   for (double factor = 1.0; factor < kSlowest; factor *= kSlower) {
     Trajectory slower = slowed(smooth, factor);
@@ -107,22 +151,39 @@ Retimed withoutJerk(const InverseDynamicsSolver& solver, const Trajectory& motio
   return {{}, {Refusal::Reason::kNoWayOn, s, -1, 0.0}};
 }
 
-/// The fastest motion, whatever its jerk.
-Retimed withJerk(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
-                 const RetimeOptions& options) {
+/// About the jerks that limits of jerk and of the torques' rates allow, n.
+VectorXd typicalJerk(const InverseDynamicsSolver& solver, const Path& path,
+                     const MotionLimits& limits) {
+  constexpr double kMost = 1e9;  // rad/s^3
+  constexpr int kPlaces = 20;
+  const Index n = path.jointCount();
+  VectorXd jerk = VectorXd::Constant(n, kMost), q(n), dq(n), ddq(n), inertia = VectorXd::Zero(n);
+  if (limits.jerk.size() > 0) jerk = limits.jerk;
+  if (limits.torque_rate.size() == 0) return jerk;
+  for (int i = 0; i <= kPlaces; ++i) {
+    path.evaluate(path.start() + (path.end() - path.start()) * i / kPlaces, q, dq, ddq);
+    inertia = inertia.cwiseMax(solver.getInertiaMatrix(q).diagonal().cwiseAbs());
+  }
+  return jerk.cwiseMin((limits.torque_rate.array() / inertia.array()).matrix());
+}
+
+/// The fastest motion, whatever its jerk and torque rates.
+Retimed withJumps(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
+                  const RetimeOptions& options) {
   const std::vector<Index> knots = borders(path);
   std::vector<double> s, speed;
   for (std::size_t section = 0; section + 1 < knots.size(); ++section) {
     const bool first = section == 0, last = section + 2 == knots.size();
     const double start = first ? options.start_speed : 0.0, end = last ? options.end_speed : 0.0;
     VectorXd grid = gridOf(path, knots[section], knots[section + 1], options.points), finer, z;
+    const Index most = kMostFiner * grid.size();
     for (int round = 0;; ++round) {
       const PathDynamics dynamics(solver, path, grid, limits, options.margin);
       PhasePlane plane(dynamics);
       if (plane.solve(start * start, end * end)) {
         z = plane.z();
         finer = refined(grid, dynamics.excess(z));
-        if (finer.size() == 0 || round == kRefinements) break;
+        if (finer.size() == 0 || finer.size() > most || round == kRefinements) break;
       } else {
         // Intervals that are too coarse may leave no way where finer ones do.
         if (plane.refusal().reason != Refusal::Reason::kNoWayOn || round == kTries) {
@@ -141,26 +202,30 @@ Retimed withJerk(const InverseDynamicsSolver& solver, const Path& path, const Mo
           {}};
 }
 
-/// The fastest of the motions with jerk in limits whose accelerations, before they are averaged, the
-/// joints reach within one time: the longer it is, the longer is the span of averaging.
-Retimed fastestWithoutJerk(const InverseDynamicsSolver& solver, const Trajectory& fastest,
-                           const MotionLimits& limits, const RetimeOptions& options) {
+/// The fastest of the motions without jumps whose accelerations, before they are averaged, the joints
+/// reach within one time: the longer it is, the longer is the span of averaging.
+Retimed fastestWithoutJumps(const InverseDynamicsSolver& solver, const Trajectory& fastest,
+                            const MotionLimits& limits, const RetimeOptions& options) {
   constexpr double kWorse = 2.0, kSame = 1.001, kLeastStep = 1.1;
   constexpr int kHalvings = 30;
+  const VectorXd jerk = typicalJerk(solver, fastest.path(), limits);
   Retimed best{{}, {Refusal::Reason::kNoWayOn, 0.0, -1, 0.0}};
   // About 2.5 times the best time of a motion that is all acceleration, or one that limits nothing.
-  const double duration = fastest.duration(),
-               limitless = 2 * accelerationTime(fastest, limits.jerk);
+  const double duration = fastest.duration(), limitless = 2 * accelerationTime(fastest, jerk);
   double time = std::min(std::cbrt(duration * duration * limitless), limitless), best_time = time;
   // How long the motion with another time takes, as a share of the best one.
   const auto attempt = [&](double reached) {
     MotionLimits softer = limits;
-    softer.acceleration = reached * limits.jerk;
+    softer.acceleration = reached * jerk;
     if (limits.acceleration.size() > 0) {
       softer.acceleration = softer.acceleration.cwiseMin(limits.acceleration).eval();
     }
-    Retimed motion = withJerk(solver, fastest.path(), softer, options);
-    if (motion) motion = withoutJerk(solver, motion.trajectory, limits, options.margin);
+    Retimed motion = withJumps(solver, fastest.path(), softer, options);
+    if (motion) motion = withoutJumps(solver, motion.trajectory, limits, jerk, options.margin);
+    if (motion.refusal.reason >= Refusal::Reason::kTooSlow) {  // slower ones are refused as well
+      if (!best) best = std::move(motion);
+      return kWorse;
+    }
     const double share =
         motion && best ? motion.trajectory.duration() / best.trajectory.duration() : 1.0;
     if (!best || share < kSame)
@@ -181,9 +246,9 @@ Retimed fastestWithoutJerk(const InverseDynamicsSolver& solver, const Trajectory
 Retimed retime(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
                const RetimeOptions& options) {
   check(solver, path, limits, options);
-  Retimed fastest = withJerk(solver, path, limits, options);
-  if (!fastest || limits.jerk.size() == 0) return fastest;
-  return fastestWithoutJerk(solver, fastest.trajectory, limits, options);
+  Retimed fastest = withJumps(solver, path, limits, options);
+  if (!fastest || limits.jerk.size() + limits.torque_rate.size() == 0) return fastest;
+  return fastestWithoutJumps(solver, fastest.trajectory, limits, options);
 }
 
 chain_dynamics::OwnedVector speedLimit(const InverseDynamicsSolver& solver,
@@ -221,6 +286,20 @@ std::string text(const Refusal& refusal, const std::vector<std::string>& joint_n
     case Refusal::Reason::kStartTooFast:
       return "the start's speed is too high: expected ds/dt of at most " + number(refusal.missing) +
              "; start slower";
+    case Refusal::Reason::kEndTooFast:
+      return "the end's speed is too high: expected ds/dt of at most " + number(refusal.missing) +
+             "; end slower";
+    case Refusal::Reason::kTooSlow:
+      return "within the limits the motion takes at least " + number(refusal.missing) +
+             " s: with limits of jerk or torque rate, expected at most " + number(kLongest) +
+             " s; raise the limits, or divide the path";
+    case Refusal::Reason::kRateTooLow:
+      return place + " the torque of joint " +
+             joint_names[static_cast<std::size_t>(refusal.joint)] + " changes by " +
+             number(refusal.missing) +
+             " N m/s, however slow the motion is: friction steps there; raise the limit of its "
+             "rate, or "
+             "use a model whose friction rises smoothly";
   }
   return {};
 }

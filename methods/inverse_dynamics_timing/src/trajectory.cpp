@@ -3,101 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <iomanip>
+#include <sstream>
 #include <utility>
-#include <vector>
 
 namespace inverse_dynamics_timing {
 inline namespace v2 {
 
-namespace {
-
 using Eigen::Index;
 using Eigen::VectorXd;
-
-/// A part of a motion between two stops: points first to last of its grid.
-struct Section {
-  Index first, last;
-};
-
-std::vector<Section> sectionsOf(const Trajectory& motion) {
-  std::vector<Section> sections{{0, 0}};
-  for (Index k = 1; k < motion.s().size(); ++k) {
-    if (motion.s()[k] == motion.s()[k - 1]) sections.push_back({k, k});
-    sections.back().last = k;
-  }
-  return sections;
-}
-
-/// s at a time, from the section's start on; beyond its ends it stands still.
-double positionAt(const Trajectory& motion, const Section& section, double t) {
-  const auto& time = motion.time();
-  t += time[section.first];
-  if (t <= time[section.first]) return motion.s()[section.first];
-  if (t >= time[section.last]) return motion.s()[section.last];
-  const double* const begin = time.data();
-  const Index k = std::upper_bound(begin + section.first, begin + section.last, t) - begin - 1;
-  const double share = (t - time[k]) / (time[k + 1] - time[k]);
-  const double speed = motion.speed()[k] + share * (motion.speed()[k + 1] - motion.speed()[k]);
-  return motion.s()[k] + (motion.speed()[k] + speed) / 2 * (t - time[k]);
-}
-
-constexpr double kStep = 1e-3;  // s, of smoothed motions
-
-/// The motion with its speed averaged over a span of time; stops stay stops.
-Trajectory averaged(const Trajectory& motion, double span) {
-  std::vector<double> s, speed;
-  for (const Section& section : sectionsOf(motion)) {
-    const double duration = motion.time()[section.last] - motion.time()[section.first] + span;
-    // Steps of at least kStep, so that acceleration changes once within it.
-    const auto steps = std::max<Index>(static_cast<Index>(duration / kStep), 4);
-    const double step = duration / static_cast<double>(steps);
-    const double from = motion.s()[section.first], to = motion.s()[section.last];
-    const std::size_t begin = s.size();
-    for (Index i = 0; i <= steps; ++i) {
-      const double t = static_cast<double>(i) * step;
-      const double v =
-          i == 0 || i == steps
-              ? 0.0
-              : (positionAt(motion, section, t) - positionAt(motion, section, t - span)) / span;
-      s.push_back(i == 0 ? from : s.back() + (speed.back() + v) / 2 * step);
-      speed.push_back(v);
-    }
-    // Sums of trapezoids miss the end by little.
-    const double scale = (to - from) / (s.back() - from);
-    for (std::size_t i = begin; i < s.size(); ++i) s[i] = from + (s[i] - from) * scale;
-    s.back() = to;
-  }
-  const auto count = static_cast<Index>(s.size());
-  return {motion.path(), Eigen::Map<const VectorXd>(s.data(), count),
-          Eigen::Map<const VectorXd>(speed.data(), count)};
-}
-
-/// The greatest acceleration and jerk of a joint, each over the joint's limit of jerk.
-struct Peaks {
-  double acceleration = 0.0;  // s
-  double jerk = 0.0;
-};
-
-Peaks peaksOf(const Trajectory& motion, const Eigen::Ref<const VectorXd>& limit) {
-  const Index n = limit.size();
-  VectorXd q(n), qd(n), before(VectorXd::Zero(n)), qdd(n);
-  Peaks most;
-  const auto raise = [&limit](double& peak, const VectorXd& values) {
-    peak = std::max(peak, (values.cwiseAbs().array() / limit.array()).maxCoeff());
-  };
-  const auto steps = static_cast<Index>(std::ceil(motion.duration() / kStep));
-  for (Index i = 0; i <= steps; ++i) {
-    motion.evaluate((static_cast<double>(i) + 0.5) * kStep, q, qd, qdd);
-    if (i == steps) qdd.setZero();  // it stands
-    raise(most.acceleration, qdd);
-    raise(most.jerk, (qdd - before) / kStep);
-    before = qdd;
-  }
-  return most;
-}
-
-}  // namespace
 
 Trajectory::Trajectory(Path path, const Eigen::Ref<const VectorXd>& s,
                        const Eigen::Ref<const VectorXd>& speed)
@@ -125,26 +40,25 @@ void Trajectory::evaluate(double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd>
   qd *= speed;
 }
 
-double accelerationTime(const Trajectory& motion, const Eigen::Ref<const VectorXd>& jerk) {
-  return peaksOf(motion, jerk).acceleration;
-}
-
-Trajectory smoothJerk(const Trajectory& motion, const Eigen::Ref<const VectorXd>& jerk) {
-  // The longest span turns the greatest acceleration into its opposite.
-  double too_short = 0.0, span = std::max(2 * accelerationTime(motion, jerk), 2 * kStep);
-  for (int halving = 0; halving < 8; ++halving) {
-    const double middle = (too_short + span) / 2;
-    (peaksOf(averaged(motion, middle), jerk).jerk > 1.0 ? too_short : span) = middle;
+chain_dynamics::OwnedVector sampleTimes(double duration, double rate) {
+  constexpr double kMost = 1e6;
+  const auto number = [](double value) {
+    std::ostringstream digits;
+    digits << std::setprecision(3) << value;
+    return digits.str();
+  };
+  if (duration * rate > kMost) {
+    throw inverse_dynamics_solver::InvalidParameterValueException(
+        "rate", "",
+        "at most " + number(kMost / duration) + " Hz for a motion of " + number(duration) +
+            " s, a million samples",
+        number(rate), "lower it, or raise the limits that make the motion so long");
   }
-  // The other jerk is that of the path's bends, in proportion to the cube of speed.
-  Trajectory smooth = averaged(motion, span);
-  double factor = 1.0;
-  for (double over = 0.0; (over = peaksOf(smooth, jerk).jerk) > 1.0;) {
-    constexpr double kRounding = 1e-4;
-    factor *= std::cbrt(over) + kRounding;
-    smooth = averaged(slowed(motion, factor), factor * span);
-  }
-  return smooth;
+  const auto steps = std::max<Index>(static_cast<Index>(std::ceil(duration * rate - 0.5)), 1);
+  chain_dynamics::OwnedVector times(steps + 1);
+  for (Index k = 0; k < steps; ++k) times[k] = static_cast<double>(k) / rate;
+  times[steps] = duration;
+  return times;
 }
 
 Trajectory slowed(const Trajectory& motion, double factor) {

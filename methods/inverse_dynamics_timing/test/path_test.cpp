@@ -8,6 +8,7 @@
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -142,6 +143,37 @@ TEST(Path, RefusesWhatIsNoPath) {
   MatrixXd broken = corner();
   broken(1, 1) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT([&] { Path::spline(broken); }, refused("finite"));
+}
+
+// q = x (1 - x) (2 - x) of the first joint, q' = 3 x^2 - 6 x + 2.
+TEST(Path, JointsTurnBackWhereTheirDerivativeChangesItsSign) {
+  const Path path = Path::function(
+      [](double s, auto q, auto dq, auto ddq) {
+        q << s * (1 - s) * (2 - s), s;
+        dq << 3 * s * s - 6 * s + 2, 1;
+        ddq << 6 * s - 6, 0;
+      },
+      2, VectorXd::LinSpaced(4, 0.0, 2.0));
+  const double extreme = 2 / (3 * std::sqrt(3.0));
+  const std::vector<double> turns = path.turningPoints();
+  ASSERT_EQ(turns.size(), 2);
+  EXPECT_NEAR(turns[0], 1 - 1 / std::sqrt(3.0), 1e-7);
+  EXPECT_NEAR(turns[1], 1 + 1 / std::sqrt(3.0), 1e-7);
+  const MatrixXd ranges = path.positionRanges();
+  EXPECT_LT((ranges - (MatrixXd(2, 2) << -extreme, extreme, 0, 2).finished()).norm(), kRounding);
+}
+
+TEST(Path, RangesOfLongPathsAreTheirExtremes) {
+  const Path path = Path::spline(MatrixXd::Random(3, 200));
+  const MatrixXd ranges = path.positionRanges();
+  MatrixXd found(3, 2);
+  found.colwise() = at(path, path.start()).q;
+  for (int i = 0; i <= 200000; ++i) {
+    const VectorXd q = at(path, path.end() * i / 200000).q;
+    found.col(0) = found.col(0).cwiseMin(q), found.col(1) = found.col(1).cwiseMax(q);
+  }
+  EXPECT_LT((ranges - found).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_TRUE((ranges.col(1).array() >= found.col(1).array()).all());
 }
 
 }  // namespace

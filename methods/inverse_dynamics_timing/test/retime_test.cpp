@@ -8,6 +8,7 @@
 #include <chain_dynamics/model_file.hpp>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/kinematics.hpp>
@@ -55,6 +56,19 @@ std::unique_ptr<InverseDynamicsSolver> identified(const std::string& model) {
   return solver;
 }
 
+/// An identified model with changes.
+std::unique_ptr<InverseDynamicsSolver> identifiedWith(
+    const std::string& model_file, const std::function<void(chain_dynamics::Model&)>& change) {
+  chain_dynamics::Model model =
+      chain_dynamics::modelFromFile(INVERSE_DYNAMICS_ROBOTS_DIR "/models/" + model_file);
+  change(model);
+  const std::string file = testing::TempDir() + "changed_model.yaml";
+  std::ofstream(file) << chain_dynamics::modelFileText(model);
+  auto solver = std::make_unique<RigidBody>();
+  solver->initialize({{"model", file}});
+  return solver;
+}
+
 /// A slider of `mass` kg, moved by the force `mass qdd`.
 std::unique_ptr<InverseDynamicsSolver> slider() {
   auto solver = std::make_unique<RigidBody>();
@@ -66,10 +80,10 @@ std::unique_ptr<InverseDynamicsSolver> slider() {
   return solver;
 }
 
-MatrixXd randomWaypoints(Index joints, unsigned seed) {
+MatrixXd randomWaypoints(Index joints, unsigned seed, Index count = 4) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> angle(-1.3, 1.3);
-  MatrixXd waypoints(joints, 4);
+  MatrixXd waypoints(joints, count);
   for (double& value : waypoints.reshaped()) value = angle(random);
   return waypoints;
 }
@@ -181,6 +195,28 @@ TEST(Retime, StartsAndEndsWithTheSpeedsAsked) {
   EXPECT_THAT(text(too_fast.refusal, solver->jointNames()), HasSubstr("4.89"));
 }
 
+TEST(Retime, SaysTheGreatestSpeedOfTheEnd) {
+  const auto solver = slider();
+  const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
+  MotionLimits limits;
+  limits.torque = VectorXd::Constant(1, 10.0);
+  RetimeOptions options;
+  const auto greatest = [&] {
+    const Retimed too_fast = retime(*solver, path, limits, options);
+    EXPECT_EQ(too_fast.refusal.reason, Refusal::Reason::kEndTooFast);
+    EXPECT_THAT(text(too_fast.refusal, solver->jointNames()), HasSubstr("end's speed"));
+    return too_fast.refusal.missing;
+  };
+  options.end_speed = 5.0;  // 2 m with 5 m/s^2
+  EXPECT_NEAR(greatest(), std::sqrt(20.0), 1e-3);
+  options.start_speed = 1.0;
+  EXPECT_NEAR(greatest(), std::sqrt(21.0), 1e-3);
+  options.end_speed = 0.999 * greatest();
+  EXPECT_TRUE(retime(*solver, path, limits, options));
+  limits.velocity = VectorXd::Constant(1, 1.5);
+  EXPECT_NEAR(greatest(), 1.5, 1e-9);
+}
+
 // Whatever the friction is, the duration is that of dynamic programming.
 TEST(Retime, IsAsFastAsDynamicProgrammingWithFrictionAndWithout) {
   constexpr double kSame = 0.01;
@@ -217,6 +253,31 @@ TEST(Retime, TorquesStayWithinLimitsBetweenPoints) {
         EXPECT_LT(greatestUse(*solver, fastest.trajectory, torque), 1 + kLimit) << seed << real;
         // and some joint is at its limit, nearly everywhere
         EXPECT_GT(greatestUse(*solver, fastest.trajectory, torque), 1 - kLimit);
+      }
+    }
+  }
+}
+
+// Joints turn back several times between two waypoints, and friction steps there.
+TEST(Retime, TorquesStayWithinLimitsOnPathsOfManyWaypoints) {
+  constexpr double kWithFriction = 0.002;
+  MotionLimits limits;
+  limits.torque = ur10Torques();
+  chain_dynamics::SmoothCoulomb falling;  // from 20 N m to 10 between 1 and 100 mrad/s
+  falling.fv = 5, falling.fc = 10, falling.fs = 10, falling.vs = 0.1, falling.width = 0.001;
+  const chain_dynamics::ViscousCoulombOffset step{5, 10, 2};
+  for (const chain_dynamics::FrictionLaw& law :
+       {chain_dynamics::FrictionLaw(step), chain_dynamics::FrictionLaw(falling)}) {
+    const auto solver = identifiedWith("ur10_identified.yaml", [&](chain_dynamics::Model& model) {
+      model.friction.assign(6, law);
+    });
+    for (unsigned seed = 0; seed < 3; ++seed) {
+      const MatrixXd waypoints = randomWaypoints(6, seed, 50);
+      for (const Path& path : {Path::spline(waypoints), Path::lines(waypoints, 0.05)}) {
+        const Retimed fastest = retime(*solver, path, limits);
+        ASSERT_TRUE(fastest) << text(fastest.refusal, solver->jointNames());
+        EXPECT_LT(greatestUse(*solver, fastest.trajectory, limits.torque), 1 + kWithFriction)
+            << "law " << law.index() << ", seed " << seed;
       }
     }
   }
@@ -279,13 +340,10 @@ TEST(Retime, SaysWhichJointLacksHowMuchTorque) {
 
 TEST(Retime, MarginLeavesTheBandOfTheModelFree) {
   const VectorXd band = 0.1 * pandaTorques();  // of 95 %
-  chain_dynamics::Model model = chain_dynamics::modelFromFile(
-      INVERSE_DYNAMICS_ROBOTS_DIR "/models/franka_gaz2019_feasible.yaml");
-  model.torque_deviation = band;
-  const std::string file = testing::TempDir() + "margin.yaml";
-  std::ofstream(file) << chain_dynamics::modelFileText(model);
-  RigidBody solver;
-  solver.initialize({{"model", file}});
+  const auto owned =
+      identifiedWith("franka_gaz2019_feasible.yaml",
+                     [&](chain_dynamics::Model& model) { model.torque_deviation = band; });
+  const InverseDynamicsSolver& solver = *owned;
   const Path path = Path::spline(randomWaypoints(7, 1));
   MotionLimits limits;
   limits.torque = pandaTorques();
@@ -324,12 +382,81 @@ TEST(Retime, JerkStaysWithinItsLimit) {
   const Trajectory& motion = smooth.trajectory;
   EXPECT_GT(motion.duration(), fastest);
   EXPECT_LT(greatestUse(*solver, motion, ur10Torques()), 1 + kLimit);
-  VectorXd q(6), qd(6), qdd(6), before = VectorXd::Zero(6);
-  for (double t = 5e-4; t < motion.duration(); t += 1e-3) {
+  VectorXd q(6), qd(6), qdd(6), later(6);
+  for (double t = 0.0; t < motion.duration() - 1e-3; t += 1e-4) {
     motion.evaluate(t, q, qd, qdd);
-    EXPECT_LT((qdd - before).cwiseAbs().maxCoeff() / 1e-3, 300.0 * 1.1);
-    before = qdd;
+    motion.evaluate(t + 1e-3, q, qd, later);
+    EXPECT_LT((later - qdd).cwiseAbs().maxCoeff() / 1e-3, 300.0 * 1.003);
   }
+}
+
+TEST(Retime, TorquesStayWithinLimitsWithJerkLimitsThatHardlyMatter) {
+  const auto solver = identified("ur10_identified.yaml");
+  MotionLimits limits;
+  limits.torque = ur10Torques();
+  limits.jerk = VectorXd::Constant(6, 1e6);
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const Retimed motion = retime(*solver, Path::spline(randomWaypoints(6, seed, 5)), limits);
+    ASSERT_TRUE(motion);
+    EXPECT_LT(greatestUse(*solver, motion.trajectory, limits.torque), 1.003) << seed;
+  }
+}
+
+TEST(Retime, TorqueRatesStayWithinTheirLimits) {
+  const auto solver = identified("franka_inria_identified.yaml");
+  const Path path = Path::spline(randomWaypoints(7, 2));
+  MotionLimits limits;
+  limits.torque = pandaTorques();
+  const double fastest = retime(*solver, path, limits).trajectory.duration();
+  limits.torque_rate = VectorXd::Constant(7, 1000.0);
+  const Retimed smooth = retime(*solver, path, limits);
+  ASSERT_TRUE(smooth) << text(smooth.refusal, solver->jointNames());
+  const Trajectory& motion = smooth.trajectory;
+  EXPECT_GT(motion.duration(), fastest);
+  EXPECT_LT(motion.duration(), 2 * fastest);
+  EXPECT_LT(greatestUse(*solver, motion, limits.torque), 1.003);
+  VectorXd q(7), qd(7), qdd(7);
+  for (double t = 0.0; t < motion.duration() - 1e-3; t += 1e-4) {
+    motion.evaluate(t, q, qd, qdd);
+    const VectorXd before = solver->getTorques(q, qd, qdd);
+    motion.evaluate(t + 1e-3, q, qd, qdd);
+    const VectorXd after = solver->getTorques(q, qd, qdd);
+    ASSERT_LT((after - before).cwiseAbs().maxCoeff() / 1e-3, 1000.0 * 1.003) << t;
+  }
+}
+
+TEST(Retime, TorqueRatesOfAMassAreItsJerks) {
+  const auto solver = slider();  // 2 kg
+  const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
+  MotionLimits jerks, rates;
+  jerks.torque = rates.torque = VectorXd::Constant(1, 10.0);
+  jerks.jerk = VectorXd::Constant(1, 20.0), rates.torque_rate = VectorXd::Constant(1, 40.0);
+  EXPECT_NEAR(retime(*solver, path, rates).trajectory.duration(),
+              retime(*solver, path, jerks).trajectory.duration(), 1e-9);
+}
+
+TEST(Retime, FrictionThatStepsFasterThanATorqueMayIsNamed) {
+  const auto solver = identifiedWith("ur10_identified.yaml", [](chain_dynamics::Model& model) {
+    model.friction.assign(6, chain_dynamics::ViscousCoulombOffset{5, 10, 2});
+  });
+  MotionLimits limits;
+  limits.torque = ur10Torques(), limits.torque_rate = VectorXd::Constant(6, 1000.0);
+  const Retimed none = retime(*solver, Path::spline(randomWaypoints(6, 1)), limits);
+  EXPECT_EQ(none.refusal.reason, Refusal::Reason::kRateTooLow);
+  EXPECT_GT(none.refusal.missing, 1e4);  // 10 N m within 1 ms
+  EXPECT_THAT(text(none.refusal, solver->jointNames()), HasSubstr("friction steps there"));
+}
+
+TEST(Retime, MotionsWithJerkLimitsThatTakeTooLongAreRefused) {
+  const auto solver = slider();
+  const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
+  MotionLimits limits;
+  limits.torque = VectorXd::Constant(1, 10.0);
+  limits.jerk = VectorXd::Constant(1, 10.0);
+  limits.velocity = VectorXd::Constant(1, 1e-5);
+  const Retimed slow = retime(*solver, path, limits);
+  EXPECT_EQ(slow.refusal.reason, Refusal::Reason::kTooSlow);
+  EXPECT_THAT(text(slow.refusal, solver->jointNames()), HasSubstr("takes at least 2e+05 s"));
 }
 
 // The shortest time of a way d is (32 d / j)^(1/3).
@@ -348,6 +475,25 @@ TEST(Retime, JerkLimitsTakeTheCubeRootOfTheirInverse) {
       EXPECT_GT(retime(*solver, path, limits).trajectory.duration(), 0.995 * duration);
     }
   }
+}
+
+// A joint_trajectory_controller refuses times that don't rise.
+TEST(SampleTimes, RiseStrictlyWithALastStepOfHalfAPeriodAtLeast) {
+  constexpr double kRate = 250.0, kRounded = 1e-12;
+  for (int n = 1; n < 500; ++n) {
+    for (const double duration : {n / kRate, n / kRate * (1 + 1e-15), n / kRate * (1 - 1e-15),
+                                  (n + 0.3) / kRate, (n + 0.5) / kRate, (n + 0.7) / kRate}) {
+      const VectorXd times = sampleTimes(duration, kRate);
+      const VectorXd steps = times.tail(times.size() - 1) - times.head(times.size() - 1);
+      EXPECT_EQ(times[0], 0.0);
+      EXPECT_EQ(times[times.size() - 1], duration);
+      EXPECT_GT(steps.minCoeff(), 0.5 / kRate - kRounded) << duration;
+      EXPECT_LT(steps.maxCoeff(), 1.5 / kRate + kRounded) << duration;
+    }
+  }
+  EXPECT_EQ(sampleTimes(1e-4, kRate), VectorXd(Eigen::Vector2d(0.0, 1e-4)));
+  EXPECT_THAT([] { sampleTimes(1e5, kRate); },
+              refused("rate: expected at most 10 Hz for a motion of 1e+05 s"));
 }
 
 TEST(Retime, SpeedLimitIsAboveTheSpeed) {
@@ -404,7 +550,12 @@ TEST(Retime, RefusesWrongLimitsAndOptions) {
                 limits.jerk = VectorXd::Ones(1), options.start_speed = 0.1;
               }),
               refused("at rest"));
+  EXPECT_THAT(with([](L& limits, O& options) {
+                limits.torque_rate = VectorXd::Ones(1), options.end_speed = 0.1;
+              }),
+              refused("limits.torque_rate"));
   EXPECT_THAT(with([](L&, O& options) { options.points = 1; }), refused("points"));
+  EXPECT_THAT(with([](L&, O& options) { options.points = 2000000; }), refused("1000000"));
   EXPECT_THAT(with([](L&, O& options) { options.margin = 1; }), refused("margin"));
   EXPECT_THAT(with([](L&, O& options) { options.end_speed = -1; }), refused("end_speed"));
   EXPECT_THROW(with([](L& limits, O&) { limits.jerk = VectorXd::Ones(2); })(),

@@ -32,13 +32,13 @@ JOINT_COLORS = (
 
 
 def retime_figure(result: Retimed) -> Figure:
-    """Path speed over its limit curve, a strip of joints at their limits, and torques over time."""
+    """Path speed over its limit curve; over time a strip of joints at their limits, and torques."""
     from matplotlib.figure import Figure
 
     joints = len(result.joint_names)
-    height = 3.4 + 1.15 * joints
+    height = 3.6 + 1.15 * joints
     figure = Figure(figsize=(11.0, height))
-    ratios = (2.2, 0.28, *(1.0 for _ in range(joints)))
+    ratios = (2.2, 0.5, *(1.0 for _ in range(joints)))
     axes = figure.subplots(joints + 2, 1, gridspec_kw={"height_ratios": ratios})
     figure.subplots_adjust(
         left=0.07, right=0.985, top=1 - 0.75 / height, bottom=0.5 / height, hspace=0.62
@@ -73,25 +73,30 @@ def _draw_speed(axis: Axes, result: Retimed) -> None:
     axis.set_xlim(timed.s[0], timed.s[-1])
     axis.set_ylim(0.0, top)
     axis.legend(loc="lower right", fontsize=8, frameon=False)
+    axis.set_xlabel("way along the path [rad]", color=palette.MUTED, labelpad=1)
     write_title(axis, "speed along the path [rad/s]; grey: beyond what limits allow")
 
 
 def _draw_strip(axis: Axes, result: Retimed) -> None:
-    """Colours along the path: the joint nearest to its limit, where it is at it."""
+    """Colours over time, a row each for torque and velocity: the joint nearest to its limit, where it is at it."""
     from matplotlib.patches import Patch
 
-    place = np.interp(result.time, result.timed.time, result.timed.s)
+    rows = {"velocity": result.limiting_velocity, "torque": result.limiting}
     shown = []
     for j, joint in enumerate(result.joint_names):
         color = JOINT_COLORS[j % len(JOINT_COLORS)]
-        if (here := result.limiting == j).any():
-            axis.fill_between(place, 0, 1, where=here, color=color, linewidth=0, step="mid")
+        for row, limiting in enumerate(rows.values()):
+            axis.fill_between(
+                result.time, row, row + 1, where=limiting == j, color=color, linewidth=0, step="mid"
+            )
+        if any((limiting == j).any() for limiting in rows.values()):
             shown.append(Patch(color=color, label=joint))
-    axis.set_xlim(place[0], place[-1])
-    axis.set_yticks([])
+    axis.axhline(1.0, color=palette.MUTED, linewidth=0.5)
+    axis.set_xlim(result.time[0], result.time[-1])
+    axis.set_ylim(0.0, len(rows))
+    axis.set_yticks([0.5, 1.5], list(rows), fontsize=8)
     axis.grid(visible=False)
-    axis.set_xlabel("way along the path [rad]", color=palette.MUTED, labelpad=1)
-    write_title(axis, "joint at its torque limit")
+    write_title(axis, "joint at its limit")
     if shown:
         axis.legend(
             handles=shown,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics._core import sample_times
 from inverse_dynamics.arrays import stretches
 from inverse_dynamics.evaluation.page import model_facts
 from inverse_dynamics.retiming.figure import JOINT_COLORS
@@ -23,18 +24,17 @@ if TYPE_CHECKING:
     from inverse_dynamics.retiming.retiming import Retimed
 
 RATE = 250.0  # Hz, of what is drawn
+MOST_DRAWN = 100_000  # samples
 _FASTEST, _OTHER = ("fastest", "computed"), ("constant acceleration", "error")  # names, colours
 
 
 def retime_page(result: Retimed) -> str:
     """The page as text."""
-    from inverse_dynamics.retiming.retiming import sample_times  # which imports this module
-
     robot, arm = result.robot, Arm(result.robot)
     scene = Scene() if robot.urdf is None else read_scene(robot.urdf, arm.joint_names)
     motions = [(_FASTEST, result.time, result.q, result.efforts)]
     if (other := result.by_acceleration) is not None:
-        time = sample_times(other.duration, RATE)
+        time = sample_times(other.duration, min(RATE, MOST_DRAWN / other.duration))
         states = other.states(time)
         motions.append((_OTHER, time, states[0], arm.solver.torques(*states)))
     plots = [
@@ -58,7 +58,7 @@ def retime_page(result: Retimed) -> str:
         ],
         drawn=bool(scene.links),
         banded=bool(result.band.any()),
-        strip=_strip(result),
+        strip=_strip(result, max(time[-1] for _, time, _, _ in motions)),
         plots=plots,
         table=retime_table(result),
         assumptions=_assumptions(result),
@@ -118,18 +118,24 @@ def spans(place: Floats, flags: Mask) -> list[tuple[float, float]]:
     return list(zip(*(borders[edges].tolist() for edges in stretches(flags)), strict=True))
 
 
-def _strip(result: Retimed) -> dict[str, Any]:
-    """Colours of the joints at their limits along the path, from 0 to 1."""
-    s = np.interp(result.time, result.timed.time, result.timed.s)
-    share = (s - s[0]) / (s[-1] - s[0])
-    found, shown = [], []
-    for j, joint in enumerate(result.joint_names):
-        color = JOINT_COLORS[j % len(JOINT_COLORS)]
-        own = spans(share, result.limiting == j)
-        found += [{"start": f"{a:.5f}", "width": f"{b - a:.5f}", "color": color} for a, b in own]
-        if own:
-            shown.append((joint, color))
-    return {"spans": found, "joints": shown, "text": ", ".join(joint for joint, _ in shown)}
+def _strip(result: Retimed, longest: float) -> dict[str, Any]:
+    """Colours of the joints at their limits: rows of torque and velocity over time, longest = 1."""
+    rows = []
+    for name, limiting in (("torque", result.limiting), ("velocity", result.limiting_velocity)):
+        found = [
+            {"start": f"{a:.5f}", "width": f"{b - a:.5f}", "color": color}
+            for j, color in enumerate(_colors(result))
+            for a, b in spans(result.time / longest, limiting == j)
+        ]
+        names = ", ".join(result.joint_names[j] for j in np.unique(limiting) if j >= 0)
+        rows.append({"name": name, "spans": found, "joints": names})
+    seen = np.union1d(result.limiting, result.limiting_velocity)
+    joints = [(result.joint_names[j], _colors(result)[j]) for j in seen if j >= 0]
+    return {"rows": rows, "joints": joints}
+
+
+def _colors(result: Retimed) -> list[str]:
+    return [JOINT_COLORS[j % len(JOINT_COLORS)] for j in range(len(result.joint_names))]
 
 
 def _assumptions(result: Retimed) -> list[tuple[str, str]]:
@@ -137,8 +143,11 @@ def _assumptions(result: Retimed) -> list[tuple[str, str]]:
     rows = [
         *model_facts(result.robot),
         *(
-            (f"limits of {name}", ", ".join(f"{value:g}" for value in getattr(limits, name)))
-            for name in ("velocity", "acceleration", "jerk")
+            (
+                f"limits of {name.replace('_', ' ')}",
+                ", ".join(f"{value:g}" for value in getattr(limits, name)),
+            )
+            for name in ("velocity", "acceleration", "jerk", "torque_rate")
         ),
         ("speed of the tip", f"{limits.tip_speed:g} m/s" if np.isfinite(limits.tip_speed) else ""),
         (

@@ -9,6 +9,7 @@ The method is that of the C++ header inverse_dynamics_timing/retime.hpp: docs/re
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
@@ -20,6 +21,7 @@ from inverse_dynamics._core import (
     MotionLimits,
     RetimeOptions,
     retime_path,
+    sample_times,
     speed_limit,
     torque_band,
 )
@@ -59,17 +61,19 @@ if TYPE_CHECKING:
 
 _UNLIMITED = 1e6  # N m, rad/s: beyond every joint
 _OF_MOTORS = ("knee_velocity", "no_load_velocity")
-PER_JOINT = ("torque", "velocity", "acceleration", "jerk", *_OF_MOTORS)
+PER_JOINT = ("torque", "velocity", "acceleration", "jerk", "torque_rate", *_OF_MOTORS)
 _ABOUT_ONE = 0.998  # share of torque limits from which on the compared acceleration is good enough
 _AIM = 0.999  # the share that its search aims at
 _MOST_STEPS = 12  # of its search
 _WEIGHING_RATE = 250.0  # Hz, of samples for energies
+_MOST_WEIGHED = 100_000  # samples
 _SLOWEST = 0.05  # share of the fastest motion's velocities
 _SECTIONS = 9  # of the search: the share is known to 3 %, the sum to far less
 _STILL = 1e-6  # rad/s
 _CLOSE = 0.5  # rad, between the samples of a recorded path
 _LEAST = 1e-9  # N m, of a limit
-_PLACES = 1001  # of a path, at which positions are checked
+_ARMS: deque[tuple[Robot, tuple[int, ...], Arm]] = deque(maxlen=4)
+_ABOVE = 1.003  # of a limit, between samples
 _ROUNDING = 1e-6  # rad
 _AT_LIMIT = 0.99  # of a limit: the joint counts as being at it
 
@@ -128,8 +132,12 @@ class Retimed(ResultDirectory):
     @property
     def limiting(self) -> Integers:
         """(N,) the joint whose torque is at its limit, of several the one nearest to it; -1: none is."""
-        use = np.abs(self.use)
-        return np.where(use.max(axis=1) > _AT_LIMIT, use.argmax(axis=1), -1)
+        return _limiting(self.use)
+
+    @property
+    def limiting_velocity(self) -> Integers:
+        """(N,) the joint whose velocity is at its limit, of several the one nearest to it; -1: none is."""
+        return _limiting(self.qd / self.limits.velocity)
 
     def inputs(self) -> tuple[Path | None, ...]:
         """The robot's files."""
@@ -141,6 +149,11 @@ class Retimed(ResultDirectory):
 
 
 write_retimed = Retimed.save
+
+
+def _limiting(use: Floats) -> Integers:
+    use = np.abs(use)
+    return np.where(use.max(axis=1) > _AT_LIMIT, use.argmax(axis=1), -1)
 
 
 class PathShape(TypedDict, total=False):
@@ -164,6 +177,8 @@ def retime(
     options: RetimeOptions | None = None,
     weight: float = 0.0,
     rate: float = 250.0,
+    duration: float | None = None,
+    compare: bool = True,
     **shape: Unpack[PathShape],
 ) -> Retimed:
     """Time a path so that it takes as little as the limits allow.
@@ -181,15 +196,23 @@ def retime(
         Those that aren't among them are those of the robot description.
     weight
         s/J. Above 0 the motion is slower and minimises about duration + weight * energy.
+    options
+        The motion's speed at both ends, the share of measured torques within limits, the points of the grid.
     rate
-        Of the samples, Hz.
+        Of the samples, Hz. The last step takes half a period to one and a half.
+    duration
+        Of the motion, s, if not the shortest: at each place it is slower by the same factor.
+    compare
+        Whether the path is timed with one acceleration limit too; without it `by_acceleration` is None, and
+        the call takes a tenth of the time.
     **shape
         How waypoints become a path: PathShape.
 
     Raises
     ------
     UserError
-        BagError, RobotError, SolverError; the path leaves a joint's range, or can't be held.
+        BagError, RobotError, SolverError; the path leaves a joint's range, or can't be held; the duration is
+        shorter than the fastest motion's, or the motion has too many samples.
 
     Examples
     --------
@@ -200,11 +223,12 @@ def retime(
     (True, 6)
     """
     robot = robot_of(robot)
-    if not rate > 0.0:
-        raise UserError(f"rate: expected a number above zero, Hz, got {rate:g}")
+    for name, unit, value in (("rate", "Hz", rate), ("duration", "s", duration)):
+        if value is not None and not 0.0 < value < np.inf:
+            raise UserError(f"{name}: expected a finite number above zero, {unit}, got {value:g}")
     if not 0.0 <= weight < np.inf:
         raise UserError(f"weight: expected a finite number, s/J, at least zero, got {weight:g}")
-    arm = Arm(robot)
+    arm = _arm_of(robot)
     options = options or RetimeOptions()
     stated, limits = limits, described_limits(arm, limits)
     notes = [*filter(None, [arm.guess]), *arm.solver.warnings, *_notes_of_velocities(arm, limits)]
@@ -219,12 +243,18 @@ def retime(
         notes += seams
     _check_positions(path, arm)
     fastest = retime_path(arm.solver, path, limits, options)
-    acceleration, by_acceleration = _by_acceleration(arm.solver, fastest, limits, options)
+    acceleration, by_acceleration = (
+        _by_acceleration(arm.solver, fastest, limits, options) if compare else (np.nan, None)
+    )
     timed = fastest
-    if len(limits.jerk) and by_acceleration:  # neither of them is the fastest of all
+    if (
+        len(limits.jerk) + len(limits.torque_rate) and by_acceleration
+    ):  # neither is the fastest of all
         timed = min(fastest, by_acceleration, key=lambda one: one.duration)
     if weight > 0.0:
         timed = _weighted(arm.solver, timed, limits, options, weight)
+    if duration is not None:
+        timed = _slowed(arm, timed, duration, limits, options)
     time = sample_times(timed.duration, rate)
     q, qd, qdd = timed.states(time)
     efforts = arm.solver.torques(q, qd, qdd)
@@ -248,6 +278,17 @@ def retime(
     )
 
 
+def _arm_of(robot: Robot) -> Arm:
+    """Its arm, of an earlier call if neither the robot nor its files changed: making solvers takes 10 to 30 ms."""
+    stamps = tuple(file.stat().st_mtime_ns for file in robot.files if file and file.exists())
+    for known, at, arm in list(_ARMS):
+        if known == robot and at == stamps:
+            return arm
+    arm = Arm(robot)
+    _ARMS.append((robot, stamps, arm))
+    return arm
+
+
 def torque_limit(limits: MotionLimits, qd: Floats) -> Floats:
     """(N, n) N m, of joints at velocities (N, n)."""
     knee, none = limits.knee_velocity, limits.no_load_velocity
@@ -255,11 +296,6 @@ def torque_limit(limits: MotionLimits, qd: Floats) -> Floats:
         np.clip((none - np.abs(qd)) / (none - knee), 0.0, 1.0) if len(knee) else np.ones_like(qd)
     )
     return limits.torque * share
-
-
-def sample_times(duration: float, rate: float) -> Floats:
-    """0 to the duration, both included, `rate` per second and the last interval shorter."""
-    return np.append(np.arange(0.0, duration, 1.0 / rate), duration)
 
 
 def described_limits(arm: Arm, given: MotionLimits | None = None) -> MotionLimits:
@@ -304,10 +340,10 @@ def _notes_of_velocities(arm: Arm, limits: MotionLimits) -> list[str]:
 
 def _check_positions(path: JointPath, arm: Arm) -> None:
     """Raise UserError where the path leaves the joints' ranges."""
-    q, _, _ = path.states(np.linspace(path.knots[0], path.knots[-1], _PLACES))
+    ranges = path.position_ranges
     lower, upper = arm.limit("lower", -np.inf), arm.limit("upper", np.inf)
     for j, joint in enumerate(arm.joint_names):
-        least, most = q[:, j].min(), q[:, j].max()
+        least, most = ranges[:, j]
         if least < lower[j] - _ROUNDING or most > upper[j] + _ROUNDING:
             raise UserError(
                 f"path: joint {joint}: expected positions from {lower[j]:g} to {upper[j]:g}, the limits in "
@@ -431,6 +467,51 @@ def _changed(limits: MotionLimits, **changes: Floats) -> MotionLimits:
     return MotionLimits(**{**{name: getattr(limits, name) for name in names}, **changes})
 
 
+def _dense(timed: TimedPath) -> Floats:
+    """Times at points of the grid and in the middle between them, s."""
+    return np.sort(np.append(timed.time, (timed.time[1:] + timed.time[:-1]) / 2))
+
+
+def _use(
+    solver: Solver, limits: MotionLimits, band: Floats, states: tuple[Floats, Floats, Floats]
+) -> Floats:
+    """(N, n) sizes of torques over what they may be."""
+    room = np.maximum(torque_limit(limits, states[1]) - band, _LEAST)
+    use: Floats = np.abs(solver.torques(*states)) / room
+    return use
+
+
+def _slowed(
+    arm: Arm, timed: TimedPath, duration: float, limits: MotionLimits, options: RetimeOptions
+) -> TimedPath:
+    """The motion with a longer duration. Raises UserError."""
+    least = np.ceil(timed.duration * 1e4) / 1e4
+    if options.start_speed or options.end_speed:
+        raise UserError(
+            "duration: expected none for a motion that starts or ends at a speed, which it would change; "
+            "leave out one of them"
+        )
+    if duration < timed.duration:
+        raise UserError(
+            f"duration: expected at least {least:.4f} s, what the fastest motion takes, got {duration:g} s"
+        )
+    slower = timed.slowed(duration / timed.duration)
+    times = _dense(slower)
+    use = _use(arm.solver, limits, torque_band(arm.solver, options.margin), slower.states(times))
+    k, j = np.unravel_index(use.argmax(), use.shape)
+    if use[k, j] > _ABOVE:
+        raise UserError(
+            f"duration: at {times[k]:.4g} s of {duration:g} s joint {arm.joint_names[j]} needs "
+            f"{100 * use[k, j]:.0f} % of its torque limit: there the robot can pass, but not slowly; choose a "
+            "shorter duration, or change the path"
+        )
+    return slower
+
+
+def _weighing_times(timed: TimedPath) -> Floats:
+    return sample_times(timed.duration, min(_WEIGHING_RATE, _MOST_WEIGHED / timed.duration))
+
+
 def _weighted(
     solver: Solver,
     fastest: TimedPath,
@@ -442,11 +523,11 @@ def _weighted(
 
     Each joint keeps below one share, the same for all, of its greatest velocity in the fastest motion.
     """
-    time = sample_times(fastest.duration, _WEIGHING_RATE)
+    time = _weighing_times(fastest)
     greatest = np.maximum(np.abs(fastest.states(time)[1]).max(axis=0), _STILL)
 
     def total(timed: TimedPath) -> float:
-        time = sample_times(timed.duration, _WEIGHING_RATE)
+        time = _weighing_times(timed)
         states = timed.states(time)
         energy = MotionEnergy.of(solver, time, *states[:2], solver.torques(*states))
         return float(timed.duration) + weight * energy.driven
@@ -494,8 +575,7 @@ def _by_acceleration(
     grid_times = (fastest.time[1:] + fastest.time[:-1]) / 2
 
     def use(q: Floats, qd: Floats, qdd: Floats) -> float:
-        room = np.maximum(torque_limit(limits, qd) - band, _LEAST)
-        return float((np.abs(solver.torques(q, qd, qdd)) / room).max())
+        return float(_use(solver, limits, band, (q, qd, qdd)).max())
 
     def motion(acceleration: float) -> tuple[float, TimedPath | None]:
         common = _changed(unlimited, acceleration=np.minimum(own, acceleration))
@@ -503,8 +583,7 @@ def _by_acceleration(
             timed = retime_path(solver, fastest.path, common, grid)
         except UserError:  # a speed at an end is too high
             return np.inf, None
-        middles = (timed.time[1:] + timed.time[:-1]) / 2
-        return use(*timed.states(np.sort(np.append(timed.time, middles)))), timed
+        return use(*timed.states(_dense(timed))), timed
 
     q, qd, qdd = fastest.states(grid_times)
     low, low_use = 0.0, use(q, _STILL * qd, np.zeros_like(q))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.terminal.options import SOLVER, TABLE, Options, changed_robot, stated
-from inverse_dynamics.terminal.values import numbers, positive_number, share, whole_numbers
+from inverse_dynamics.terminal.values import count, numbers, positive_number, share, whole_numbers
 
 if TYPE_CHECKING:
     import argparse
@@ -54,19 +54,33 @@ def declare(options: Options) -> None:
     way.add("--stops K,K,...", "waypoints to stand still at, from 0", whole_numbers)
     way.add(
         "--start-speed SPEED",
-        "rad/s at its start: the root of the sum of squares over the joints",
-        positive_number,
+        "at its start, rad/s of the way from waypoint to waypoint: on straight lines the root of the sum of "
+        "squares over the joints (default: 0)",
+        _distance,
     )
-    way.add("--end-speed SPEED", "and at its end", positive_number)
+    way.add("--end-speed SPEED", "and at its end", _distance)
     limits = options.group("limits, one for all joints or one for each")
     limits.add("--torque A,B,...", "N m (default: of the robot description)", numbers)
     limits.add("--velocity A,B,...", "rad/s (default: of the robot description)", numbers)
     limits.add("--acceleration A,B,...", "rad/s^2 (default: of a URDF 1.2)", numbers)
     limits.add("--jerk A,B,...", "rad/s^3 (default: of a URDF 1.2)", numbers)
+    limits.add("--torque-rate A,B,...", "N m/s, of the torque over 1 ms (Franka: 1000)", numbers)
     limits.add("--knee-velocity A,B,...", "rad/s, above it torque limits fall in a line", numbers)
     limits.add("--no-load-velocity A,B,...", "rad/s, there they are zero", numbers)
     limits.add("--tip-speed M/S", "speed of the tip, m/s", positive_number)
     limits.add("--margin SHARE", "of measured torques that stay within limits: 0.95", share)
+    options.add(
+        "--duration SECONDS",
+        "of the motion, if not the shortest: slower by the same factor everywhere",
+        positive_number,
+    )
+    options.add(
+        "--sample-rate HZ",
+        "of the points of the trajectory (default: 250)",
+        positive_number,
+        dest="sample_rate",
+    )
+    options.add("--points N", "of the grid that it is computed on, about (default: 1000)", count)
     options.add(
         "--weight S/J",
         "minimise about duration + weight * energy: slower, less energy",
@@ -82,6 +96,8 @@ def _distance(text: str) -> float:
 
 def _of_options(text: str) -> str:
     """The text of an error of retime(), with the names of options."""
+    text = re.sub("^rate: ", "--sample-rate: ", text)
+    text = re.sub("^(duration|weight): ", r"--\1: ", text)
     return re.sub(
         r"retime\(\): (?:limits|options)\.(\w+)", lambda m: "--" + m[1].replace("_", "-"), text
     )
@@ -101,8 +117,11 @@ def run(arguments: argparse.Namespace) -> None:
             arguments.path,
             robot,
             MotionLimits(**stated(arguments, *PER_JOINT, "tip_speed")),
-            options=RetimeOptions(**stated(arguments, "margin", "start_speed", "end_speed")),
-            **stated(arguments, "weight", "topic", "deviation", "stops"),
+            options=RetimeOptions(
+                **stated(arguments, "margin", "start_speed", "end_speed", "points")
+            ),
+            **stated(arguments, "weight", "duration", "topic", "deviation", "stops"),
+            **({"rate": arguments.sample_rate} if arguments.sample_rate else {}),
         )
     except UserError as error:
         raise type(error)(_of_options(f"{error}")) from error

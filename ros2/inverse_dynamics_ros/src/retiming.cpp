@@ -3,7 +3,6 @@
 #include "retiming.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <inverse_dynamics_control/joint_parameters.hpp>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
@@ -21,7 +20,6 @@ using inverse_dynamics_timing::Path;
 using inverse_dynamics_timing::Retimed;
 using inverse_dynamics_timing::Trajectory;
 
-constexpr int kPlaces = 1000;       // of a path, at which positions are checked
 constexpr double kRounding = 1e-6;  // rad
 
 void copy(const VectorXd& from, std::vector<double>& to) { to.assign(from.begin(), from.end()); }
@@ -115,31 +113,28 @@ Eigen::MatrixXd Retiming::waypoints(const JointTrajectory& path) const {
 
 // A spline may leave them between waypoints.
 void Retiming::checkRanges(const Path& path) const {
-  VectorXd q(lower_.size()), dq(q), ddq(q);
-  for (int k = 0; k <= kPlaces; ++k) {
-    path.evaluate(path.start() + (path.end() - path.start()) * k / kPlaces, q, dq, ddq);
-    for (Index j = 0; j < q.size(); ++j) {
-      if (q[j] >= lower_[j] - kRounding && q[j] <= upper_[j] + kRounding) continue;
-      throw UserError("path: joint " + joints_[static_cast<std::size_t>(j)],
-                      "positions from " + std::to_string(lower_[j]) + " to " +
-                          std::to_string(upper_[j]) + " rad",
-                      std::to_string(q[j]),
-                      "move waypoints, or set deviation for straight lines between them");
-    }
+  const Eigen::MatrixXd ranges = path.positionRanges();
+  for (Index j = 0; j < ranges.rows(); ++j) {
+    const double least = ranges(j, 0), most = ranges(j, 1);
+    if (least >= lower_[j] - kRounding && most <= upper_[j] + kRounding) continue;
+    throw UserError(
+        "path: joint " + joints_[static_cast<std::size_t>(j)],
+        "positions from " + std::to_string(lower_[j]) + " to " + std::to_string(upper_[j]) + " rad",
+        std::to_string(least) + " to " + std::to_string(most),
+        "move waypoints, or set deviation for straight lines between them");
   }
 }
 
 Retiming::JointTrajectory Retiming::sampled(const Trajectory& motion) const {
   JointTrajectory result;
   result.joint_names = joints_;
-  const auto intervals = static_cast<std::size_t>(std::ceil(motion.duration() * params_.rate));
-  result.points.resize(intervals + 1);
+  const VectorXd times = inverse_dynamics_timing::sampleTimes(motion.duration(), params_.rate);
+  result.points.resize(static_cast<std::size_t>(times.size()));
   VectorXd q(lower_.size()), qd(q), qdd(q);
-  for (std::size_t k = 0; k <= intervals; ++k) {
-    const double t = std::min(static_cast<double>(k) / params_.rate, motion.duration());
-    motion.evaluate(t, q, qd, qdd);
-    auto& point = result.points[k];
-    point.time_from_start = rclcpp::Duration::from_seconds(t);
+  for (Index k = 0; k < times.size(); ++k) {
+    motion.evaluate(times[k], q, qd, qdd);
+    auto& point = result.points[static_cast<std::size_t>(k)];
+    point.time_from_start = rclcpp::Duration::from_seconds(times[k]);
     copy(q, point.positions);
     copy(qd, point.velocities);
     copy(qdd, point.accelerations);

@@ -71,6 +71,11 @@ class Path {
   /// Where the robot stands still between start and end, rising; each is a knot.
   const chain_dynamics::OwnedVector& stops() const { return stops_; }
 
+  /// Where joints turn back: s, rising, at which an element of `q'` changes its sign within a piece.
+  std::vector<double> turningPoints() const;
+  /// Least and greatest position of each joint on the whole path, n x 2.
+  chain_dynamics::OwnedMatrix positionRanges() const;
+
   /// `q`, `q' = dq/ds` and `q''` at s, n numbers each; s is limited to the path. Allocates nothing.
   ///
   /// At a stop `q'` and `q''` may jump: those of the piece after it, or `before` it.

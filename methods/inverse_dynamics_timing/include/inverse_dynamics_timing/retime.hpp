@@ -42,9 +42,12 @@ struct MotionLimits {
   chain_dynamics::OwnedVector torque;        ///< N m (sliders: N); required
   chain_dynamics::OwnedVector velocity;      ///< rad/s
   chain_dynamics::OwnedVector acceleration;  ///< rad/s^2
-  /// rad/s^3; start and end must be at rest. The speed of a motion with limited acceleration is averaged
-  /// over a span of time [smoothJerk()]; the acceleration is the best for it, not an optimum of all motions.
+  /// rad/s^3, of `qdd` over 1 ms; start and end must be at rest. The speed of a motion with limited
+  /// acceleration is averaged over a span of time; the acceleration is the best for it, not an optimum of
+  /// all motions.
   chain_dynamics::OwnedVector jerk;
+  /// N m/s, of the torque over 1 ms, friction included; kept as limits of jerk are.
+  chain_dynamics::OwnedVector torque_rate;
 
   /// @name Motors whose torque falls with speed
   /// The torque limit falls in a line from `torque` at `knee_velocity` to zero at
@@ -58,7 +61,7 @@ struct MotionLimits {
 };
 
 struct RetimeOptions {
-  Eigen::Index points = 1000;  ///< of the grid, about; each polynomial piece has a few at least
+  Eigen::Index points = 1000;  ///< of the grid, about; there are more where the path bends
   double start_speed = 0.0;    ///< ds/dt at the path's start, >= 0
   double end_speed = 0.0;      ///< at its end
   /// Share of the measured torques that shall be within the limits, for solvers whose model states
@@ -74,11 +77,16 @@ struct Refusal {
     kTorqueAtRest,  ///< a joint can't hold the robot at `s`, where it rests, or where no speed helps
     kNoWayOn,       ///< each speed at `s` leads where limits can't be kept
     kStartTooFast,  ///< the start's speed is beyond what limits allow
+    kEndTooFast,    ///< the end's speed is
+    kTooSlow,       ///< with limits of jerk or of the torque's rate, a motion longer than 600 s
+    kRateTooLow,    ///< a joint's torque changes faster than its limit, however slow the motion is
   };
   Reason reason = Reason::kNone;
   double s = 0.0;           ///< where, parameter of the path
   Eigen::Index joint = -1;  ///< which joint lacks torque
-  double missing = 0.0;     ///< how much, N m; kStartTooFast: the greatest speed that is possible
+  /// How much, N m; of speeds the greatest possible one, ds/dt; kTooSlow: the duration, s; kRateTooLow:
+  /// the rate, N m/s.
+  double missing = 0.0;
 };
 
 /// Text of a refusal, with the joint's name; empty: none.

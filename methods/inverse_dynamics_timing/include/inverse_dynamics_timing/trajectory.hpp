@@ -47,17 +47,14 @@ class Trajectory {
   chain_dynamics::OwnedVector time_, s_, speed_;
 };
 
-/// The motion with joint jerks within limits: its speed is averaged over a span of time, which is as
-/// short as the limits allow, and then slowed where the path's own bends need it.
+/// Times at which a motion is sampled for a controller, s: 0, 1 / rate, 2 / rate, ..., duration.
 ///
-/// The path stays the same. Averaged states lie between those of the motion, so its torques pass their
-/// limits only as far as H, C and g change within the span; retime() then slows the motion.
+/// They rise strictly: the last step takes half a period to one and a half, and one step is all of a
+/// motion that is shorter.
 ///
-/// @param jerk  n, > 0, rad/s^3: of `qdd` over 1 ms.
-Trajectory smoothJerk(const Trajectory& motion, const Eigen::Ref<const Eigen::VectorXd>& jerk);
-
-/// The time in which the joints reach the motion's greatest accelerations with these jerks, s.
-double accelerationTime(const Trajectory& motion, const Eigen::Ref<const Eigen::VectorXd>& jerk);
+/// @param duration,rate  > 0; s, Hz.
+/// @throws inverse_dynamics_solver::InvalidParameterValueException  more than a million samples.
+chain_dynamics::OwnedVector sampleTimes(double duration, double rate);
 
 /// The motion slower by a factor >= 1, the same along the whole path.
 Trajectory slowed(const Trajectory& motion, double factor);

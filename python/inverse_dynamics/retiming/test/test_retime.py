@@ -11,11 +11,20 @@ from example_robots import JOINTS
 from pages import browser, child, complaints, time_of, wait_until
 from scipy.interpolate import CubicSpline
 
-from inverse_dynamics import cli, load_robot, retime, trajectory_torques
-from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retime_path
+from inverse_dynamics import (
+    JointPath,
+    MotionLimits,
+    RetimeOptions,
+    cli,
+    load_robot,
+    retime,
+    trajectory_torques,
+)
+from inverse_dynamics._core import retime_path, sample_times
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.retiming.files import message_of
 from inverse_dynamics.retiming.page import retime_page, spans
-from inverse_dynamics.retiming.retiming import described_limits, sample_times, torque_limit
+from inverse_dynamics.retiming.retiming import described_limits, torque_limit
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.motion_energy import MotionEnergy
 from inverse_dynamics.robots.robots import robot_of_description, with_changes
@@ -220,6 +229,22 @@ def test_limits_hold_between_points_of_the_grid(arm, velocity):
         assert (np.abs(solver.torques(q, qd, qdd)) / torque).max() < 1.0 + SHORTER
 
 
+@pytest.mark.parametrize(
+    ("arm", "velocity"), [("panda", [2.2] * 4 + [2.6] * 3), ("ur10", [2.0] * 2 + [3.1] * 4)]
+)
+def test_limits_hold_on_paths_of_many_waypoints_with_friction(arm, velocity):
+    solver, random = load_robot(f"{arm}_real").solver(), np.random.default_rng(11)
+    limits = MotionLimits(torque=LIMITS[f"{arm}_simulated"], velocity=velocity)
+    for k in range(PATHS):
+        waypoints = random.uniform(-1.2, 1.2, (50, len(velocity)))
+        path = JointPath.spline(waypoints) if k % 2 else JointPath.lines(waypoints, 0.05)
+        timed = retime_path(solver, path, limits)
+        between = timed.time[:-1, None] + np.outer(np.diff(timed.time), np.arange(0.025, 1.0, 0.05))
+        q, qd, qdd = timed.states(between.ravel())
+        assert (np.abs(qd) / velocity).max() < 1.002
+        assert (np.abs(solver.torques(q, qd, qdd)) / limits.torque).max() < 1.002
+
+
 def test_torque_that_falls_with_speed_is_the_limit_kept_and_shown():
     """Also where the motors' greatest speed leaves them no torque to hold the arm."""
     random, torque = np.random.default_rng(3), np.array(LIMITS["ur10_simulated"])
@@ -242,7 +267,7 @@ def test_torque_that_falls_with_speed_is_the_limit_kept_and_shown():
     assert shown.torque_limit.min() < 0.8 * torque.min()
     assert 0.99 < np.abs(shown.use).max() < 1.01
     other = shown.by_acceleration
-    states = other.states(sample_times(other.duration, 250.0))
+    states = other.states(sample_times(other.duration, 100.0))
     assert (np.abs(solver.torques(*states)) < 1.02 * torque_limit(limits, states[1])).all()
 
 
@@ -315,6 +340,125 @@ joints:
     friction: {law: none}
     link: [3, 0, 0, 0, 0.1, 0, 0, 0.1, 0, 0.1]
 """
+
+
+def test_times_are_those_that_a_joint_trajectory_controller_accepts(turner):
+    """Rising strictly, also where a duration is a multiple of the period but for rounding."""
+    for n in range(300, 406):
+        moved = retime([[0.0], [1.0]], turner, duration=n / 250.0, compare=False)
+        stamps = [point.time_from_start for point in message_of(moved).points]
+        steps = np.diff([stamp.sec * 10**9 + stamp.nanosec for stamp in stamps])
+        assert steps.min() >= 2_000_000
+        assert steps.max() <= 6_000_001
+        assert moved.time[-1] == moved.duration == pytest.approx(n / 250.0, rel=1e-14)
+
+
+def test_positions_beyond_the_range_are_found_however_short_they_are(tmp_path):
+    waypoints = np.random.default_rng(4).uniform(-1.0, 1.0, (120, 1))
+    path = JointPath.spline(waypoints)
+    coarse = path.states(np.linspace(*path.knots[[0, -1]], 1001))[0].max()
+    fine = path.states(np.linspace(*path.knots[[0, -1]], 1_000_001))[0].max()
+    assert coarse < fine - 5e-5
+    urdf = tmp_path / "arm.urdf"
+    revolute = TURNER.replace("continuous", "revolute")
+    for upper, refused in ((fine - 5e-5, True), (fine + 1e-6, False)):
+        urdf.write_text(revolute.replace("effort=", f'lower="-9" upper="{upper}" effort='))
+        if refused:
+            with pytest.raises(UserError, match="turn: expected positions from -9 to"):
+                retime(waypoints, urdf, compare=False)
+        else:
+            assert retime(waypoints, urdf, compare=False).q.max() < upper
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        ({"velocity": [1e-5]}, r"rate: expected at most 10 Hz for a motion of 1e\+05 s"),
+        (
+            {"velocity": [1e-5], "jerk": [1.0]},
+            r"takes at least 1e\+05 s: with limits of jerk or torque rate",
+        ),
+        ({"jerk": [1e-12]}, "torque rate, expected at most 600 s"),
+        ({"acceleration": [1e-200]}, "limits can't be kept"),
+    ],
+)
+def test_tiny_limits_end_in_a_message(turner, given, text):
+    with pytest.raises(UserError, match=text):
+        retime([[0.0], [1.0]], turner, MotionLimits(**given), compare=False)
+
+
+def test_a_longer_duration_is_the_same_motion_slower(fastest):
+    slow = retime(WAYPOINTS, "ur10_real", duration=2.5)
+    assert slow.duration == pytest.approx(2.5, rel=1e-14)
+    factor = 2.5 / fastest.duration
+    np.testing.assert_allclose(slow.timed.speed * factor, fastest.timed.speed, rtol=1e-12)
+    assert (np.abs(slow.use) <= 1.005).all()
+    least = rf"duration: expected at least {fastest.duration:.3f}\d s, .*, got 1 s"
+    with pytest.raises(UserError, match=least):
+        retime(WAYPOINTS, "ur10_real", duration=1.0)
+    with pytest.raises(UserError, match="duration: expected none for a motion that starts"):
+        retime(WAYPOINTS, "ur10_real", duration=9.0, options=RetimeOptions(end_speed=0.1))
+
+
+def test_a_place_that_is_passed_but_not_slowly_limits_the_duration(tmp_path):
+    """A heavy arm swings up past the horizontal, where its torque doesn't hold it."""
+    urdf = tmp_path / "arm.urdf"
+    lifted = TURNER.replace('<mass value="1"/>', '<origin xyz="1 0 0"/><mass value="1"/>')
+    urdf.write_text(
+        lifted.replace('xyz="0 0 1"', 'xyz="0 -1 0"').replace('velocity="3"', 'velocity="99"')
+    )
+    swing = [[-1.5], [1.5]]
+    torque = MotionLimits(torque=[9.0])
+    free = retime(swing, urdf, torque, compare=False)
+    assert np.abs(free.use).max() < 1.002
+    with pytest.raises(UserError, match=r"joint turn needs \d+ % of its torque limit"):
+        retime(swing, urdf, torque, compare=False, duration=20.0)
+
+
+def test_without_a_comparison_the_motion_is_the_same(fastest, tmp_path):
+    alone = retime(WAYPOINTS, "ur10_real", compare=False)
+    np.testing.assert_array_equal(alone.q, fastest.q)
+    assert alone.by_acceleration is None
+    assert np.isnan(alone.seconds_saved)
+    alone.save(tmp_path / "out")
+    assert (
+        json.loads((tmp_path / "out/retime.json").read_text())["duration_by_acceleration"] is None
+    )
+    assert "timed in two ways" not in (tmp_path / "out/report.html").read_text()
+
+
+def test_a_description_that_changed_is_read_again(turner):
+    first = retime([[0.0], [5.0]], turner, compare=False)
+    turner.write_text(TURNER.replace('velocity="3"', 'velocity="2"'))
+    assert first.limits.velocity == [3.0]
+    assert retime([[0.0], [5.0]], turner, compare=False).limits.velocity == [2.0]
+
+
+def test_torque_rates_are_kept_and_named():
+    limits = MotionLimits(torque=LIMITS["panda_simulated"], torque_rate=[1000.0])
+    path = [[0.0, -0.5, 0.2, -2.0, 0.1, 1.8, 0.6], [1.0, 0.3, -0.5, -1.1, -0.9, 2.6, -0.6]]
+    slow = retime(path, "panda_real", limits, rate=1000.0, compare=False)
+    assert (
+        np.abs(np.diff(slow.efforts, axis=0)) <= 1.003 * np.diff(slow.time)[:, None] * 1e3
+    ).all()
+    assert "limits of torque rate" in retime_page(slow)
+    with pytest.raises(UserError, match=r"limits.torque_rate.*at rest"):
+        retime(path, "panda_real", limits, options=RetimeOptions(end_speed=0.1))
+
+
+def test_joints_at_their_velocity_are_shown_over_time(turner):
+    """5 rad with 10 rad/s^2 to 3 rad/s: 0.3 s of acceleration, 1.3667 s of it, 0.3 s of braking."""
+    moved = retime([[0.0], [5.0]], turner)
+    fast = np.flatnonzero(moved.limiting_velocity == 0)
+    assert moved.time[fast[[0, -1]]] == pytest.approx([0.3, 1.6667], abs=8e-3)
+    assert (moved.limiting[fast[2:-2]] == -1).all()
+    page = retime_page(moved)
+    rows = page.split('<div class="strip">')[1:]
+    assert [row.count("<rect") for row in rows] == [3, 2]
+    starts = [float(row.split('<rect x="')[1].partition('"')[0]) for row in rows]
+    assert starts == pytest.approx([0.0, 0.3 / moved.duration], abs=8e-3)
+    strip = moved.plot().axes[1]
+    assert strip.get_xlim() == moved.plot().axes[2].get_xlim()
 
 
 def write_column(directory, positions):
@@ -455,6 +599,12 @@ def test_page_races_both_motions(fastest, tmp_path):
         (["--jerk", "0"], "error: --jerk of shoulder_pan_joint: expected a finite number > 0"),
         (["--margin", "0.95"], "error: --margin: expected 0, or a model that states the deviation"),
         (["--stops", "9"], "expected 0 to 3, got 9"),
+        (["--velocity", "1e-5"], "error: --sample-rate: expected at most"),
+        (["--duration", "0.1"], "error: --duration: expected at least"),
+        (["--sample-rate", "1e9"], "error: --sample-rate: expected at most"),
+        (["--points", "1000000000"], "error: --points: expected 2 to 1000000"),
+        (["--end-speed", "99"], "the end's speed is too high: expected ds/dt of at most"),
+        (["--start-speed", "99"], "the start's speed is too high: expected ds/dt of at most"),
     ],
 )
 def test_refusals_say_what_to_do(tmp_path, capsys, arguments, text):
