@@ -111,8 +111,7 @@ std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& 
   auto made = std::make_unique<FastModel>(
       chain_dynamics::Model(chain_dynamics::chainFromUrdf(urdf.text, options)), threads, urdf.text,
       root, locked_joints);
-  made->origin =
-      py::make_tuple("from_urdf", urdf.text, root, tip, gravity, locked_joints, threads);
+  made->origin = py::make_tuple("from_urdf", urdf.text, root, tip, gravity, locked_joints, threads);
   return made;
 }
 

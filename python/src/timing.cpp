@@ -207,7 +207,8 @@ TimedPath)");
   module.def(
       "sample_times",
       [](double duration, double rate) { return arrayOf(sampleTimes(duration, rate)); },
-      "duration"_a, "rate"_a, R"(0, 1 / rate, ..., duration; the last step is half a period at least.
+      "duration"_a, "rate"_a,
+      R"(0, 1 / rate, ..., duration; the last step is half a period at least.
 
 Parameters
 ----------

@@ -188,7 +188,11 @@ def identify(
     still = still_joints(evaluations)
     some = 0 < len(still.parameters) < len(joints)
     if some and not (len(coupling) or robot.gears):  # which are of all joints
-        others: dict[str, Any] = {"known_payloads": known_payloads, "accept": accept, "hold_out": hold_out}
+        others: dict[str, Any] = {
+            "known_payloads": known_payloads,
+            "accept": accept,
+            "hold_out": hold_out,
+        }
         moving = _without(robot, joints, still.parameters)
         found = identify(recordings, moving, blocks=blocks, progress=progress, **others, **stated)
         return replace(found, notes=(*still.notes, *found.notes))
