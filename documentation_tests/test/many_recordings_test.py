@@ -33,7 +33,7 @@ def directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
     tau[:, 2] *= 0.5
     write_joint_logs(directory / "week/tuesday", {log.topic: replace(log, effort=tau)})
     (command,) = blocks_of(PAGE, "bash")
-    assert re.search("^ +tuesday ", run(command, directory), re.MULTILINE)
+    assert re.search("^tuesday ", run(command, directory), re.MULTILINE)
     return directory
 
 
