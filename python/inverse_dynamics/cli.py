@@ -233,7 +233,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _say(f"error: {crash_report(error, given)}; {outcome()}")
         return 2 if isinstance(error, ModuleNotFoundError) else 1
     finally:
-        del os.environ[TERMINAL]
+        os.environ.pop(TERMINAL, None)
 
 
 def _run(given: list[str]) -> int:
