@@ -195,7 +195,9 @@ def identify(
         }
         moving = _without(robot, joints, still.parameters)
         found = identify(recordings, moving, blocks=blocks, progress=progress, **others, **stated)
-        return replace(found, notes=(*still.notes, *found.notes))
+        own = robot.model is not None or robot.plugin != RIGID_BODY
+        more = ("the result isn't compared with the present model, which has all joints",) * own
+        return replace(found, notes=(*still.notes, *more, *found.notes))
     check_recordings(evaluations, accept)
     robot = evaluations[0].robot
     _check_gravity(evaluations)

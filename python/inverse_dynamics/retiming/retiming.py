@@ -318,9 +318,9 @@ def described_limits(arm: Arm, given: MotionLimits | None = None) -> MotionLimit
         if not len(found[name]):
             found[name] = np.minimum(arm.limit(limit, np.inf), _UNLIMITED)
     acceleration = np.minimum(arm.limit("acceleration", np.inf), arm.limit("deceleration", np.inf))
-    for name, limit in (("acceleration", acceleration), ("jerk", arm.limit("jerk", np.inf))):
-        if not len(found[name]) and np.isfinite(limit).any():
-            found[name] = np.minimum(limit, _UNLIMITED)
+    for name, stated in (("acceleration", acceleration), ("jerk", arm.limit("jerk", np.inf))):
+        if not len(found[name]) and np.isfinite(stated).any():
+            found[name] = np.minimum(stated, _UNLIMITED)
     lacking = [j for j, torque in zip(joints, found["torque"], strict=True) if torque == _UNLIMITED]
     if lacking:
         raise UserError(
