@@ -191,7 +191,7 @@ def test_files_that_can_not_grow_are_told_in_one_line(bag, tmp_path, storage, si
 
 @pytest.mark.parametrize("verb", ["report", "export", "compare"])
 def test_other_results_that_can_not_grow_are_told_in_one_line(result, tmp_path, verb):
-    runs = [result] * (2 if verb == "compare" else 1)
+    runs = [result, result, "--labels", "one,other"] if verb == "compare" else [result]
     out = {"report": "a.html", "export": "a.csv", "compare": "a"}[verb]
     finished = run(verb, *runs, "--out", out, cwd=tmp_path, preexec_fn=lambda: limit_files(4096))
     told_in_one_line(finished, f"ids: error: {out}: can't be written (File too large)")
