@@ -160,7 +160,7 @@ def test_currents_without_drive_gains_anywhere_are_an_error(bags, robot):
     without = replace(robot, drive_gains=(), effort="current")
     expected = (
         "robot ur10_simulated: effort means current, as the run configuration says: expected drive "
-        f"gains [N m/A], got none from {robot.file} nor from {RIGID_BODY}; give drive_gains (ids"
+        f"gains [N m/A], got none from {robot.file} nor from {RIGID_BODY}; give drive_gains"
     )
     with pytest.raises(RobotError, match=re.escape(expected)):
         evaluate(bags / "current", without)

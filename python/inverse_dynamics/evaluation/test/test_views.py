@@ -41,8 +41,7 @@ def test_a_data_frame_is_a_recording(evaluation, arrays):
     class DataFrame:
         """What pandas and polars have in common."""
 
-        def __iter__(self):
-            return iter([*(f"{joint}_{kind}" for joint in JOINTS for kind in ("pos", "tau")), "t"])
+        columns = (*(f"{joint}_{kind}" for joint in JOINTS for kind in ("pos", "tau")), "t")
 
         def __getitem__(self, name):
             if name == "t":
@@ -71,7 +70,7 @@ def test_a_data_frame_is_a_recording(evaluation, arrays):
         (
             {5: 1},
             ArgumentError,
-            "evaluate: argument bag: expected Path | str | Mapping[str, Any] | DataFrame, got {",
+            "evaluate: argument bag: expected Path | str | JointLog | Mapping[str, Any] | DataFrame, got {",
         ),
     ],
 )
