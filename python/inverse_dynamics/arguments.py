@@ -161,7 +161,14 @@ def _readable(annotation: str) -> str:
 
 def _fits(value: Any, expected: str) -> bool:
     """Whether a value is of a type as _readable() has it; True where that can't be told."""
-    return any(_is(value, kind) for kind in re.split(r" \| (?![^\[]*\])", expected))
+    kinds, depth = [""], 0
+    for letter in expected:
+        depth += (letter == "[") - (letter == "]")
+        if letter == "|" and depth == 0:
+            kinds.append("")
+        else:
+            kinds[-1] += letter
+    return any(_is(value, kind.strip()) for kind in kinds)
 
 
 def _is(value: Any, kind: str) -> bool:

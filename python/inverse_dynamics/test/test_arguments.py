@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 import inspect
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
 from example_robots import UR10
 
 from inverse_dynamics import Solver, UserError, _core, evaluate, identify, retime
-from inverse_dynamics.arguments import check_call, checked, signature_of
+from inverse_dynamics.arguments import _fits, check_call, checked, signature_of
 from inverse_dynamics.contact import ContactDetector, EstimatorOptions
 from inverse_dynamics.control import ComputedTorque, Gains, LawOptions
 from inverse_dynamics.errors import ArgumentError, InvalidParameterError
@@ -136,6 +138,12 @@ def test_what_fits_is_passed_on(solver: Solver) -> None:
     assert product.__name__ == "product"
     assert {"bag", "cutoff", "start"} <= inspect.signature(evaluate).parameters.keys()
     assert solver.gravity_vector(q=Q).shape == (6,)
+
+
+def test_a_list_of_what_may_be_several_things_fits():
+    fits = partial(_fits, expected="Path | Sequence[Path | str | Mapping[str, Any] | DataFrame]")
+    assert fits(["a.csv", Path("b.csv"), {"q": [1.0]}])
+    assert not fits(["a.csv", 1.0])
 
 
 @pytest.mark.parametrize(
