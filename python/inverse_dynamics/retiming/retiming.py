@@ -396,6 +396,8 @@ def _waypoints_of_file(path: Path, arm: Arm, topic: str) -> Plan:
     if is_csv(path):
         table, form = open_table(path, topic=topic), LogFormat.of(arm.robot)
         stated = [kind for kind, _ in stated_columns(form.columns, f"{path}")]
+        if POSITION not in stated and set(arm.recorded_names) <= set(table.names):  # of a path
+            form = replace(form, columns=",".join(filter(None, (form.columns, "position=*"))))
         timed = TIME in stated or bool(time_columns(table.names))
         form = form if timed else replace(form, rate=1.0)
         motion = read_motion(table, arm.recorded_names, form, (POSITION,))

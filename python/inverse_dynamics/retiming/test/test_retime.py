@@ -103,6 +103,12 @@ def test_files_of_waypoints_give_the_same_motion(tmp_path, fastest, suffix):
     assert found.duration == pytest.approx(fastest.duration, abs=1e-12)
 
 
+def test_columns_of_a_path_may_be_called_like_joints(tmp_path, fastest):
+    path = tmp_path / "way.csv"
+    np.savetxt(path, WAYPOINTS, delimiter=",", header=",".join(JOINTS), comments="")
+    assert retime(path, "ur10_real").duration == pytest.approx(fastest.duration, abs=1e-12)
+
+
 def test_energy_of_a_lifted_and_lowered_load_counts_the_lift_alone():
     time = np.linspace(0.0, 2.0, 2001)
     qd = np.sin(np.pi * time)[:, None]
