@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +13,7 @@ import numpy as np
 from inverse_dynamics.errors import ArgumentError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
     from typing import Any
 
     from numpy.typing import NDArray
@@ -46,10 +48,13 @@ def names_of(table: Any) -> list[Any] | None:
 def columns_of(table: Mapping[str, Any] | DataFrame) -> Iterator[tuple[str, Any]]:
     """Arrays by name: entries of a mapping, columns of a DataFrame or a structured array.
 
-    A table among the entries of a mapping gives `NAME.COLUMN`. The index of a DataFrame of pandas that has a name
-    is its first column. Masked and absent numbers are NaN, and times integers, `NAME_ns`.
+    A table or a mapping among the entries of a mapping gives `NAME.COLUMN`. The index of a DataFrame of pandas that has
+    a name is its first column. Masked and absent numbers are NaN, and times integers, `NAME_ns`.
+    Raises ValueError: two columns have the same name.
     """
     names = names_of(table)
+    if names and (twice := [name for name in names if names.count(name) > 1]):
+        raise ValueError(f"two columns are called {twice[0]}")
     index: Any = getattr(table, "index", None)
     if names is not None and getattr(index, "name", None) is not None:
         yield from _named(f"{index.name}", index)
@@ -59,19 +64,27 @@ def columns_of(table: Mapping[str, Any] | DataFrame) -> Iterator[tuple[str, Any]
 
 
 def _named(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    inner = names_of(value)
+    inner = list(value) if isinstance(value, Mapping) else names_of(value)
     if inner and all(isinstance(column, (str, tuple)) for column in inner):
-        for column, array in columns_of(value):
-            number = re.fullmatch(r"[A-Za-z_]*?(\d+)", column)  # of `q1` or `joint_1`
-            yield f"{name}[{number[1]}]" if number else f"{name}.{column}", array
+        columns = list(columns_of(value))
+        # the 1 of `q1` or `joint_1`
+        numbers = [re.sub(r"^[A-Za-z_]*?(?=\d+$)", "", key) for key, _ in columns]
+        distinct = len({*numbers}) == len(numbers)  # not of two arms
+        for (column, array), number in zip(columns, numbers, strict=True):
+            key = f"[{number}]" if distinct and number.isdecimal() else f".{column}"
+            yield f"{name}{key}", array
         return
     if isinstance(value, np.ma.MaskedArray) and value.dtype.kind in "biuf":
         value = np.ma.filled(value.astype(np.float64), np.nan)
-    array = np.asarray(value)
+    kind = getattr(getattr(value, "dtype", None), "kind", "")
+    array = np.asarray(value, "M8[ns]" if kind == "M" else None)  # of pandas also with a time zone
     if array.dtype == object and hasattr(value, "isna"):  # pandas, with absent numbers
-        array = np.where(value.isna(), np.nan, array).astype(np.float64, casting="unsafe")
+        with suppress(TypeError, ValueError):  # no numbers
+            array = np.where(value.isna(), np.nan, array).astype(np.float64, casting="unsafe")
     if array.dtype.kind in "mM":
-        name, array = f"{name}_ns", array.astype(f"{array.dtype.kind}8[ns]").astype(np.int64)
+        name, absent = f"{name}_ns", np.isnat(array)
+        array = array.astype(f"{array.dtype.kind}8[ns]").astype(np.int64)
+        array = np.where(absent, np.nan, array) if absent.any() else array
     yield name, array
 
 

@@ -94,17 +94,18 @@ def test_every_feature_takes_them(source, arrays, tmp_path):
     assert evaluate(table, tmp_path / "arm.yaml").mean_rmse < 1.0
 
 
+class Frame:
+    """Has the interface of DataFrames, as pandas and polars needn't be there."""
+
+    def __init__(self, columns):
+        self.columns = list(columns)
+        self.of = columns
+
+    def __getitem__(self, name):
+        return self.of[name]
+
+
 def test_columns_named_like_joints_are_taken_by_name():
-    """Of a class with the interface of DataFrames, as pandas and polars needn't be there."""
-
-    class Frame:
-        def __init__(self, columns):
-            self.columns = list(columns)
-            self.of = columns
-
-        def __getitem__(self, name):
-            return self.of[name]
-
     time = np.arange(20) / 100
     q = np.arange(40.0).reshape(20, 2)
     swapped = Frame({"elbow": q[:, 1], "shoulder": q[:, 0]})
@@ -114,6 +115,39 @@ def test_columns_named_like_joints_are_taken_by_name():
     numbered = Frame({"q1": q[:, 0], "q2": q[:, 1]})
     log = read_recording({**table, "q": numbered}, ["shoulder", "elbow"])
     np.testing.assert_array_equal(log.q, q)
+    by_name = {"elbow": q[:, 1], "shoulder": q[:, 0]}
+    log = read_recording({**table, "q": by_name}, ["shoulder", "elbow"])
+    np.testing.assert_array_equal(log.q, q)
+
+
+def test_of_two_arms_in_a_frame_each_has_its_own_columns():
+    q = np.arange(80.0).reshape(20, 4)
+    names = ["left_joint1", "left_joint2", "right_joint1", "right_joint2"]
+    frame = Frame(dict(zip(names, q.T, strict=True)))
+    table = {"time": np.arange(20) / 100, "q": frame, "effort": frame}
+    np.testing.assert_array_equal(read_recording(table, names[:2]).q, q[:, :2])
+    np.testing.assert_array_equal(read_recording(table, names[2:]).q, q[:, 2:])
+
+
+def test_columns_of_the_same_name_are_an_error(arrays):
+    q = Frame({"shoulder": arrays["q"][:, 0]})
+    q.columns *= 2
+    with pytest.raises(UserError, match="two columns are called shoulder"):
+        read_recording({**arrays, "q": q})
+
+
+def test_what_is_no_number_in_a_frame_of_pandas_is_passed_over(arrays):
+    pandas = pytest.importorskip("pandas")
+    table = frame(pandas, arrays)
+    log = read_recording(table, Solver(ROBOT).joint_names)
+    table["text"], table["kind"] = "some", pandas.Categorical(["some"] * COUNT)
+    table["list"], table["day"] = [[1, 2]] * COUNT, pandas.Timestamp("2026-01-01", tz="UTC")
+    np.testing.assert_array_equal(read_recording(table, log.joint_names).q, log.q)
+    table["time"] = pandas.Timestamp("2026-01-01", tz="UTC") + pandas.to_timedelta(
+        table["time"], unit="s"
+    )
+    table.loc[5, "time"] = pandas.NaT
+    assert len(read_recording(table, log.joint_names)) == COUNT - 1
 
 
 def test_masked_numbers_are_missing(arrays):
