@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from inverse_dynamics.arguments import checked
 from inverse_dynamics.installation.extras import lazily_imported
 from inverse_dynamics.outputs.files import Contents, move_up, write_text, written_whole
 from inverse_dynamics.progress import no_progress
@@ -154,6 +155,7 @@ class SimulationOptions(PlantOptions, total=False):
     table: bool
 
 
+@checked
 def simulate(
     robot: Robot | Solver | Path | str,
     *,
