@@ -71,7 +71,7 @@ def description_of(robot: Robot) -> str:
     """The robot's description. Raises SimulationError where the run configuration names none, RobotError."""
     if robot.urdf is None:
         raise SimulationError(
-            f"{robot.file}: names no urdf; a simulation needs the robot's description"
+            f"{robot.file or robot.name}: names no urdf; a simulation needs the robot's description"
         )
     return read_description(robot.urdf)
 
@@ -98,7 +98,8 @@ def simulated_robot(
     **plant: Unpack[PlantOptions],
 ) -> SimulatedRobot:
     """The robot of a run configuration. Errors name the description's file."""
-    gravity = plant.get("gravity") or robot.gravity or GRAVITY
+    stated = plant.get("gravity")
+    gravity = robot.gravity or GRAVITY if stated is None else stated
     payload, joint_friction = plant.get("payload"), plant.get("joint_friction")
     from_model = plant.get("from_model", False)
     try:
