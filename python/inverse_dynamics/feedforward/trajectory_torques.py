@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics._core import check_torques
+from inverse_dynamics._core import Solver, check_torques
 from inverse_dynamics.diagnosis.plans import Plan, beyond_limits, contradictions
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.feedforward.tables import load_lines, load_numbers
@@ -118,7 +118,7 @@ class TrajectoryTorques(Result):
 
 def trajectory_torques(
     path: Path | str,
-    robot: Robot | Path | str,
+    robot: Robot | Solver | Path | str,
     *,
     topic: str = "",
     progress: Progress = no_progress,
@@ -143,8 +143,9 @@ def trajectory_torques(
         BagError, also for times that don't increase or aren't seconds; RobotError, SolverError.
     """
     path = Path(path)
+    given = robot if isinstance(robot, Solver) else None
     robot = robot_of(robot)
-    arm = Arm(robot)
+    arm = Arm(robot, given)
     solver, joints = arm.solver, arm.recorded_names
     trajectories: list[JointTrajectory] = []
     notes: tuple[str, ...] = ()

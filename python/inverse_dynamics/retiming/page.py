@@ -30,7 +30,7 @@ _FASTEST, _OTHER = ("fastest", "computed"), ("constant acceleration", "error")  
 
 def retime_page(result: Retimed) -> str:
     """The page as text."""
-    robot, arm = result.robot, Arm(result.robot)
+    robot, arm = result.robot, Arm(result.robot, result.solver)
     scene = Scene() if robot.urdf is None else read_scene(robot.urdf, arm.joint_names)
     motions = [(_FASTEST, result.time, result.q, result.efforts)]
     if (other := result.by_acceleration) is not None:

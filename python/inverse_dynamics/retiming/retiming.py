@@ -10,7 +10,7 @@ The method is that of the C++ header inverse_dynamics_timing/retime.hpp: docs/re
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
@@ -20,6 +20,7 @@ from inverse_dynamics._core import (
     JointPath,
     MotionLimits,
     RetimeOptions,
+    Solver,
     retime_path,
     sample_times,
     speed_limit,
@@ -54,7 +55,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
-    from inverse_dynamics._core import Solver, TimedPath
+    from inverse_dynamics._core import TimedPath
     from inverse_dynamics.arrays import Floats, Integers
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Storage
@@ -101,6 +102,7 @@ class Retimed(ResultDirectory):
     by_acceleration: TimedPath | None  # the same path, one acceleration limit for all joints
     acceleration: float  # rad/s^2, that limit: the greatest under which torques keep to theirs
     notes: tuple[str, ...] = ()
+    solver: Solver | None = field(default=None, compare=False)  # the one that was given as robot
 
     @property
     def duration(self) -> float:
@@ -222,13 +224,14 @@ def retime(
     >>> bool(fast.duration < 2), fast.efforts.shape[1]  # s
     (True, 6)
     """
+    solver = robot if isinstance(robot, Solver) else None
     robot = robot_of(robot)
     for name, unit, value in (("rate", "Hz", rate), ("duration", "s", duration)):
         if value is not None and not 0.0 < value < np.inf:
             raise UserError(f"{name}: expected a finite number above zero, {unit}, got {value:g}")
     if not 0.0 <= weight < np.inf:
         raise UserError(f"weight: expected a finite number, s/J, at least zero, got {weight:g}")
-    arm = _arm_of(robot)
+    arm = _arm_of(robot) if solver is None else Arm(robot, solver)
     options = options or RetimeOptions()
     stated, limits = limits, described_limits(arm, limits)
     notes = [*filter(None, [arm.guess]), *arm.solver.warnings, *_notes_of_velocities(arm, limits)]
@@ -275,6 +278,7 @@ def retime(
         by_acceleration=by_acceleration,
         acceleration=acceleration,
         notes=tuple(notes),
+        solver=solver,
     )
 
 
@@ -373,6 +377,8 @@ def waypoints_of(path: Path | str | ArrayLike, arm: Arm, topic: str) -> Plan:
     """Waypoints, and what else a file has of the motion. Raises UserError."""
     if not isinstance(path, Path | str):
         table = by_joint(path, arm.recorded_names, "path")
+        if np.ma.is_masked(table):
+            raise UserError("path: expected a number in each place, got an array with masked ones")
         waypoints = np.asarray(table, dtype=np.float64)
         if waypoints.ndim != 2 or waypoints.shape[1] != len(arm.joint_names):
             raise UserError(
