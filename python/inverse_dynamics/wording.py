@@ -28,6 +28,7 @@ _ARGUMENTS = {
     "without-rule": "without_rules",
 }
 _SWITCHES = {"overwrite": "True", "optimise": "True", "no-friction": "False", "from-model": "True"}
+_OF_LIMITS = ("torque", "velocity")  # of retime()
 _LISTS = ("scale", "accept", "without-rule", "known-payload", "hold-out")
 _NUMBERS = re.compile(r"[-+.\de]+(,[-+.\de]+)*|[A-Z]+(,[A-Z]+)*")
 _LONGEST_WORD = 1000  # characters
@@ -137,6 +138,8 @@ def _argument(found: re.Match[str]) -> str:
     name = _ARGUMENTS.get(option, option.replace("-", "_").removeprefix("no_"))
     if option in _SWITCHES:
         return f"{name}={_SWITCHES[option]}"
+    if option in _OF_LIMITS and value is None:
+        return f"limits=MotionLimits({name}=...)"
     if value is None:
         begins = found.start() == 0 and found.string[found.end() :].startswith(":")
         return name if begins else f"{name}="

@@ -54,6 +54,7 @@ def test_the_text_of_an_error_is_short_and_harmless():
         ("give --gravity 0,0,9.81, or", "give gravity=(0, 0, 9.81), or"),
         ("give --effort-is current, and", "give effort_is='current', and"),
         ("the same --effort-is and gains", "the same effort_is= and gains"),
+        ("give them with --torque", "give them with limits=MotionLimits(torque=...)"),
         ("--tip other: the model", "tip='other': the model"),
         ("choose --from and --to in", "choose start= and end= in"),
         ("replace it with --overwrite", "replace it with overwrite=True"),
