@@ -204,7 +204,7 @@ def _most(
     k, j = (int(i) for i in np.unravel_index(apart.argmax(), apart.shape))
     return (
         f"{text}, most in {arm.recorded_names[j]}, which goes {way[k, j]:.3g} from {plan.place(k)} to "
-        f"{plan.place(k + 1)}, by velocities {driven[k, j]:.3g}; {remedy}"
+        f"{plan.place(k + 1)}, by velocities {driven[k, j] + 0.0:.3g}; {remedy}"
     )
 
 
