@@ -252,6 +252,9 @@ def _check_given(recordings: Sequence[Recorded], others: Sequence[Recorded]) -> 
     for recording, path in zip(given, resolved, strict=True):
         if resolved.count(path) > 1:
             raise IdentificationError(f"{recording}: expected each recording once, got it twice")
+    in_memory = [id(one) for one in (*recordings, *others) if not isinstance(one, Path | str)]
+    if len({*in_memory}) < len(in_memory):
+        raise IdentificationError(f"{ARRAYS}: expected each recording once, got it twice")
 
 
 def _check_gravity(evaluations: Sequence[Evaluation]) -> None:
