@@ -5,7 +5,7 @@
     has_samples_of(log, sketch)    # True
 
 Each sample is hashed, and the least hashes are kept: those of a part of a recording are among them, too [Broder 1997,
-doi 10.1109/SEQUEN.1997.666900]. Digits that tables leave out don't count, nor turns of a joint.
+doi 10.1109/SEQUEN.1997.666900]. Digits after the sixth decimal don't count, nor turns of a joint.
 """
 
 from __future__ import annotations
