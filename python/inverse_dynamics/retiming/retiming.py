@@ -206,7 +206,7 @@ def retime(
         Of the motion, s, if not the shortest: at each place it is slower by the same factor.
     compare
         Whether the path is timed with one acceleration limit too; without it `by_acceleration` is None, and
-        the call takes a tenth of the time.
+        the call takes about a sixth of the time.
     **shape
         How waypoints become a path: PathShape.
 
