@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frames.hpp"
 
+#include <algorithm>
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/robot_description.hpp>
 #include <chain_dynamics/spatial.hpp>
@@ -91,10 +92,9 @@ Frames::Path Frames::pathTo(const std::string& frame, const std::string& method)
   path.chain = std::make_unique<chain_dynamics::Chain>(chainFromRobot(robot, options));
   const std::vector<std::string> names = path.chain->jointNames();
   path.q.setZero(static_cast<Eigen::Index>(names.size()));
-  std::size_t i = 0;
-  while (i < names.size() && i < of_.joints.size() && names[i] == of_.joints[i]) ++i;
-  path.shared = static_cast<Eigen::Index>(i);
-  for (; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto ours = std::find(of_.joints.begin(), of_.joints.end(), names[i]);
+    path.numbers.push_back(ours == of_.joints.end() ? -1 : ours - of_.joints.begin());
     const auto locked = of_.locked.find(names[i]);
     if (locked != of_.locked.end()) path.q[static_cast<Eigen::Index>(i)] = locked->second;
   }
@@ -108,15 +108,27 @@ const Frames::Path& Frames::to(const std::string& frame, const std::string& meth
   return paths_.emplace(frame, pathTo(frame, method)).first->second;
 }
 
+void Frames::Path::setPositions(const chain_dynamics::ConstStates& states, Eigen::Index k,
+                                Eigen::VectorXd& of_path) const {
+  for (Eigen::Index own = 0; own < of_path.size(); ++own) {
+    const Eigen::Index j = numbers[static_cast<std::size_t>(own)];
+    if (j >= 0) of_path[own] = states(j, k);
+  }
+}
+
 void Frames::Path::jacobians(const chain_dynamics::ConstStates& states,
                              const chain_dynamics::StridedMatrices& J) const {
   Eigen::VectorXd of_path = q;
   Eigen::MatrixXd J_path(6, q.size());
   for (Eigen::Index k = 0; k < states.count; ++k) {
-    for (Eigen::Index j = 0; j < shared; ++j) of_path[j] = states(j, k);
+    setPositions(states, k, of_path);
     if (chain) chain_dynamics::tipJacobian(*chain, of_path, J_path);
     for (Eigen::Index j = 0; j < states.joints; ++j) {
-      for (Eigen::Index i = 0; i < 6; ++i) J(i, j, k) = j < shared ? J_path(i, j) : 0.0;
+      for (Eigen::Index i = 0; i < 6; ++i) J(i, j, k) = 0.0;
+    }
+    for (Eigen::Index own = 0; own < q.size(); ++own) {
+      const Eigen::Index j = numbers[static_cast<std::size_t>(own)];
+      for (Eigen::Index i = 0; i < 6 && j >= 0; ++i) J(i, j, k) = J_path(i, own);
     }
   }
 }
@@ -126,7 +138,7 @@ void Frames::Path::poses(const chain_dynamics::ConstStates& states,
                          const chain_dynamics::States& p) const {
   Eigen::VectorXd of_path = q;
   for (Eigen::Index k = 0; k < states.count; ++k) {
-    for (Eigen::Index j = 0; j < shared; ++j) of_path[j] = states(j, k);
+    setPositions(states, k, of_path);
     const auto pose = chain ? chain_dynamics::tipPose(*chain, of_path) : fixed;
     for (Eigen::Index i = 0; i < 3; ++i) {
       for (Eigen::Index j = 0; j < 3; ++j) R(i, j, k) = pose.R(i, j);

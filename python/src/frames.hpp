@@ -23,19 +23,19 @@ namespace inverse_dynamics_tools {
 struct FramesOf {
   std::string root;                      ///< empty: that of the description
   std::vector<std::string> joints;       ///< from root to tip
-  std::map<std::string, double> locked;  ///< positions of joints off the chain; others: 0
+  std::map<std::string, double> locked;  ///< positions of joints that are held; others: 0
 };
 
 /// Threads: safe.
 class Frames {
  public:
-  /// The chain from the root to a frame: joints of ours, then others, which are held.
+  /// The chain from the root to a frame: joints of ours, and others, which are held.
   struct Path {
     std::unique_ptr<const chain_dynamics::Chain> chain;  // null: nothing moves
     chain_dynamics::Transform<double> fixed =
         chain_dynamics::Transform<double>::identity();  // then
-    Eigen::Index shared = 0;
-    Eigen::VectorXd q;
+    std::vector<Eigen::Index> numbers;                  // of each joint among ours; -1: held
+    Eigen::VectorXd q;                                  // of those that are held
 
     /// `J(q)` of each state, 6 x n: the velocity of the frame's origin, linear first, in the axes
     /// of the root frame.
@@ -45,6 +45,10 @@ class Frames {
     /// Pose of the frame in the root frame at each state: R 3 x 3, and p.
     void poses(const chain_dynamics::ConstStates& states, const chain_dynamics::StridedMatrices& R,
                const chain_dynamics::States& p) const;
+
+    /// Sets the positions of joints of ours, of state k.
+    void setPositions(const chain_dynamics::ConstStates& states, Eigen::Index k,
+                      Eigen::VectorXd& of_path) const;
   };
 
   /// @param urdf  empty: there are no frames.

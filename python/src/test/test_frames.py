@@ -106,6 +106,22 @@ def test_joints_beside_the_chain_are_held():
         assert not solver.jacobian(q, frame=fixed).any()
 
 
+@pytest.mark.parametrize("locked", ["swing", "wrist"])
+def test_joints_of_the_chain_that_are_locked_are_held(locked):
+    q, held = np.array([0.3, -0.4]), {locked: 0.5}
+    whole = Solver(urdf=HAND, tip="finger")
+    moving = [name != locked for name in whole.joint_names]
+    all_q = np.insert(q, moving.index(False), 0.5)
+    for model in (
+        Solver(urdf=HAND, tip="finger", parameters={"locked_joints": held}),
+        FastModel.from_urdf(HAND, tip="finger", locked_joints=held),
+    ):
+        J = whole.jacobian(all_q)[:, moving]
+        np.testing.assert_allclose(model.jacobian(q, frame="finger"), J, atol=ROUNDING)
+        for one, other in zip(model.pose(q, "finger"), whole.tip_pose(all_q), strict=True):
+            np.testing.assert_allclose(one, other, rtol=0, atol=ROUNDING)
+
+
 @pytest.mark.parametrize(
     ("solver", "frame", "text"),
     [
