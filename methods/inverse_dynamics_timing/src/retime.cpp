@@ -30,10 +30,12 @@ constexpr double kBeside = 0.01;    // of an interval
 
 /// The grid with intervals divided where the path bends, and with points on both sides of where a joint
 /// turns back: friction steps there.
-VectorXd dividedAtBends(const Path& path, const std::vector<double>& grid) {
+///
+/// @param turns  path.turningPoints().
+VectorXd dividedAtBends(const Path& path, const std::vector<double>& turns,
+                        const std::vector<double>& grid) {
   const Index n = path.jointCount();
   VectorXd q(n), here(n), next(n), ddq(n);
-  const std::vector<double> turns = path.turningPoints();
   auto turn = std::upper_bound(turns.begin(), turns.end(), grid.front());
   std::vector<double> s{grid.front()};
   path.evaluate(grid.front(), q, next, ddq);
@@ -58,7 +60,8 @@ VectorXd dividedAtBends(const Path& path, const std::vector<double>& grid) {
 
 /// Points of the pieces from knot `first` to knot `last`. Towards stops they lie quadratically
 /// denser: there speed grows with the root of the way.
-VectorXd gridOf(const Path& path, Index first, Index last, Index points) {
+VectorXd gridOf(const Path& path, const std::vector<double>& turns, Index first, Index last,
+                Index points) {
   std::vector<double> s{path.knots()[first]};
   const double whole = path.end() - path.start();
   for (Index k = first; k < last; ++k) {
@@ -76,7 +79,7 @@ VectorXd gridOf(const Path& path, Index first, Index last, Index points) {
       s.push_back(i == count ? path.knots()[k + 1] : from + share * length);
     }
   }
-  return dividedAtBends(path, s);
+  return dividedAtBends(path, turns, s);
 }
 
 /// Numbers of the knots at which sections begin and end.
@@ -171,11 +174,13 @@ VectorXd typicalJerk(const InverseDynamicsSolver& solver, const Path& path,
 Retimed withJumps(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
                   const RetimeOptions& options) {
   const std::vector<Index> knots = borders(path);
+  const std::vector<double> turns = path.turningPoints();
   std::vector<double> s, speed;
   for (std::size_t section = 0; section + 1 < knots.size(); ++section) {
     const bool first = section == 0, last = section + 2 == knots.size();
     const double start = first ? options.start_speed : 0.0, end = last ? options.end_speed : 0.0;
-    VectorXd grid = gridOf(path, knots[section], knots[section + 1], options.points), finer, z;
+    VectorXd grid = gridOf(path, turns, knots[section], knots[section + 1], options.points);
+    VectorXd finer, z;
     const Index most = kMostFiner * grid.size();
     for (int round = 0;; ++round) {
       const PathDynamics dynamics(solver, path, grid, limits, options.margin);
