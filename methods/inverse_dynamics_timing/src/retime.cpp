@@ -43,7 +43,8 @@ VectorXd dividedAtBends(const Path& path, const std::vector<double>& turns,
     const double from = grid[k], length = grid[k + 1] - from;
     here = next;
     path.evaluate(grid[k + 1], q, next, ddq, k + 2 == grid.size());
-    const double bend = (next - here).norm() / (kBend * std::max(here.norm(), next.norm()));
+    const double greatest = std::max(here.norm(), next.norm());
+    const double bend = greatest > 0.0 ? (next - here).norm() / (kBend * greatest) : 0.0;
     const double parts = std::ceil(std::clamp(bend, 1.0, kMostParts)),
                  beside = kBeside * length / parts;
     const auto add = [&](double at) {
