@@ -183,7 +183,7 @@ Retimed withJumps(const InverseDynamicsSolver& solver, const Path& path, const M
     VectorXd grid = gridOf(path, turns, knots[section], knots[section + 1], options.points);
     VectorXd finer, z;
     const Index most = kMostFiner * grid.size();
-    for (int round = 0;; ++round) {
+    for (int round = 0, refused = 0;; ++round) {
       const PathDynamics dynamics(solver, path, grid, limits, options.margin);
       PhasePlane plane(dynamics);
       if (plane.solve(start * start, end * end)) {
@@ -192,7 +192,7 @@ Retimed withJumps(const InverseDynamicsSolver& solver, const Path& path, const M
         if (finer.size() == 0 || finer.size() > most || round == kRefinements) break;
       } else {
         // Intervals that are too coarse may leave no way where finer ones do.
-        if (plane.refusal().reason != Refusal::Reason::kNoWayOn || round == kTries) {
+        if (plane.refusal().reason != Refusal::Reason::kNoWayOn || refused++ == kTries) {
           return {{}, plane.refusal()};
         }
         finer = refined(grid, VectorXd::Ones(grid.size() - 1));
