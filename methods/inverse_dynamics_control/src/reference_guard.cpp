@@ -16,8 +16,10 @@ namespace inverse_dynamics_control {
 inline namespace v2 {
 namespace {
 
-// Tolerance for references at the limit.
+// Tolerance for references at the limit; motions timed within limits pass them by up to 0.3 %
+// [inverse_dynamics_timing].
 constexpr double kRounding = 1e-9;
+constexpr double kTimed = 1.005;             // times a limit
 constexpr double kTurn = 6.283185307179586;  // rad
 
 struct Fault {
@@ -44,9 +46,9 @@ Fault faultOf(const Reference& desired, const ReferenceLimits& limits,
     if (q < limits.lower[j] - kRounding || q > limits.upper[j] + kRounding) {
       return {StopReason::kPosition, j};
     }
-    if (std::abs(qd) > limits.velocity[j] + kRounding) return {StopReason::kVelocity, j};
+    if (std::abs(qd) > kTimed * limits.velocity[j] + kRounding) return {StopReason::kVelocity, j};
     const double most = qd * qdd < 0 ? limits.deceleration[j] : limits.acceleration[j];
-    if (std::abs(qdd) > most + kRounding) return {StopReason::kAcceleration, j};
+    if (std::abs(qdd) > kTimed * most + kRounding) return {StopReason::kAcceleration, j};
   }
   return {};
 }

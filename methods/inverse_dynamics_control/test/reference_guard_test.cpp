@@ -43,6 +43,13 @@ TEST(ReferenceGuard, SoundReferencesPassAsTheyAre) {
   EXPECT_FALSE(g.stopped());
 }
 
+TEST(ReferenceGuard, MotionsTimedWithinTheLimitsPass) {
+  ReferenceGuard g = guard();
+  g.start(vec({0.0, 0.0}));
+  g.next(referenceOf(vec({0.0, 0.0}), vec({0.5, -3.0}) * 1.003, vec({4.0, 2.0}) * 1.003), kPeriod);
+  EXPECT_FALSE(g.stopped());
+}
+
 struct Case {
   Reference desired;
   StopReason reason;

@@ -25,6 +25,8 @@ namespace inverse_dynamics_control {
 inline namespace v2 {
 
 /// Limits of a reference, n numbers each; infinity: no limit.
+///
+/// Velocities and accelerations may pass theirs by 0.5 %, as motions do that were timed within them.
 struct ReferenceLimits {
   OwnedVector lower;         ///< rad (prismatic m)
   OwnedVector upper;         ///< rad (prismatic m), not below `lower`
