@@ -359,10 +359,13 @@ class McapReader : public StorageReader {
   bool clockWasSet() {
     std::sort(chunks_.begin(), chunks_.end(),
               [](const auto& a, const auto& b) { return a.offset < b.offset; });
-    const bool overlap =
-        std::adjacent_find(chunks_.begin(), chunks_.end(), [](const auto& a, const auto& b) {
-          return b.begin_time < a.end_time;
-        }) != chunks_.end();
+    bool overlap = false;
+    std::uint64_t latest = 0;
+    for (const ChunkIndex& index : chunks_) {
+      if (index.end_time == 0) continue;  // no messages: other records
+      overlap = overlap || index.begin_time < latest;
+      latest = std::max(latest, index.end_time);
+    }
     if (!overlap) return false;
     Chunk chunk;
     StoredTimes stored;
