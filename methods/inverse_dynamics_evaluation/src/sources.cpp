@@ -219,10 +219,9 @@ void markLate(SampleTable& table) {
     return disagreement(table, a, b, table.time[b] - table.time[a]);
   };
   Index before = -1;
-  for (Index k = 0, after = 0; k < table.size(); k = after) {
+  for (Index k = nextFresh(table, -1), after = 0; k < table.size(); k = after) {
     after = nextFresh(table, k);
-    const bool repeats = before >= 0 && after < table.size() && after - before > kStuck;
-    if (repeats && !table.repeated[k]) {
+    if (before >= 0 && after < table.size() && after - before > kStuck) {
       const double least = std::min(between(before, k), between(k, after));
       if (least > typical && between(before, after) < kContradicts * least) {
         table.repeated[k] = true;
