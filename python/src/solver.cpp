@@ -5,6 +5,7 @@
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/model_file.hpp>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <inverse_dynamics_evaluation/run_configuration.hpp>
@@ -432,8 +433,14 @@ ParameterDict limitsOf(const Solver& solver) {
     const chain_dynamics::Model read = chain_dynamics::modelFromFile(model);
     for (const auto& joint : read.chain.joints()) {
       const auto& limits = joint.limits;
-      stated.append(py::dict("lower"_a = limits.lower, "upper"_a = limits.upper,
-                             "velocity"_a = limits.velocity, "effort"_a = limits.effort));
+      py::dict of_joint("lower"_a = limits.lower, "upper"_a = limits.upper);
+      for (const auto& [name, limit] :
+           {std::pair("velocity", limits.velocity), std::pair("effort", limits.effort),
+            std::pair("acceleration", limits.acceleration),
+            std::pair("deceleration", limits.deceleration), std::pair("jerk", limits.jerk)}) {
+        if (limit > 0 && std::isfinite(limit)) of_joint[name] = limit;  // zero states none
+      }
+      stated.append(of_joint);
     }
   }
   constexpr double kNone = std::numeric_limits<double>::infinity();

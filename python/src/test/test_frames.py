@@ -200,3 +200,15 @@ def test_a_solver_knows_its_limits():
                 solver.limits[name], np.full(len(solver.joint_names), value)
             )
     assert np.isfinite(Solver("ur10_real").limits["effort"]).all()
+
+
+def test_a_solver_knows_the_accelerations_that_its_model_file_allows(tmp_path):
+    urdf = HAND.replace("<robot ", '<robot version="1.2" ').replace(
+        "<limit ", '<limit acceleration="5" '
+    )
+    file = tmp_path / "hand.yaml"
+    text = FastModel.from_urdf(urdf, tip="finger").file_text(name="hand", source="x", validity="x")
+    file.write_text(text)
+    for solver in (Solver(urdf=urdf, tip="finger"), Solver(RIGID_BODY, model=str(file))):
+        np.testing.assert_array_equal(solver.limits["acceleration"], [5.0] * 3)
+        assert "jerk" not in solver.limits
