@@ -195,8 +195,9 @@ std::unique_ptr<FastModel> fromJoints(const std::vector<std::string>& names,
   const chain_dynamics::Chain chain("joints", joints, linksOf(links, n),
                                     Eigen::Vector3d(gravity.data()));
   auto made = std::make_unique<FastModel>(chain_dynamics::Model(chain), threads);
-  made->origin =
-      py::make_tuple("from_joints", names, prismatic, rotations, offsets, links, gravity, threads);
+  const auto kept = [](const Array& given) { return given.attr("copy")(); };  // it may change
+  made->origin = py::make_tuple("from_joints", names, prismatic, kept(rotations), kept(offsets),
+                                kept(links), gravity, threads);
   return made;
 }
 
