@@ -71,7 +71,8 @@ std::vector<Index> offTheWay(const SampleTable& table) {
     return distance > std::max(kLeastJump, kJumps * speed * period * static_cast<double>(periods));
   };
   std::vector<Index> found, run;
-  Index before = -1;  // the last sample on the way
+  std::size_t leaps = 0;  // that don't return
+  Index before = -1;      // the last sample on the way
   for (Index k = 0; k < table.size(); ++k) {
     if (table.repeated[k]) continue;
     const auto periods = static_cast<Index>(run.size()) + 1;
@@ -79,6 +80,7 @@ std::vector<Index> offTheWay(const SampleTable& table) {
     if (before >= 0 && distance > kLeastJump && isFar(before, k, periods, distance)) {
       run.push_back(k);
       if (static_cast<Index>(run.size()) <= kLongestRun) continue;
+      ++leaps;
       k = run.front();  // the way goes on from there
     } else {
       for (const Index i : run) {
@@ -89,6 +91,9 @@ std::vector<Index> offTheWay(const SampleTable& table) {
     run.clear();
     before = k;
   }
+  // Where most don't, velocities are wrong throughout, or positions: those of a joint in degrees return where
+  // it turns back.
+  if (leaps > found.size()) found.clear();
   return found;
 }
 

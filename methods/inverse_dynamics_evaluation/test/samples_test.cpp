@@ -381,8 +381,11 @@ TEST(ExamineSamples, LeavesOutASampleNowAndThenOfAnotherMotion) {
   for (const Eigen::Index k : places) EXPECT_FALSE(report.used[k]) << k;
   EXPECT_EQ(report.used.count(), motion.count() - 4);
 
-  // a fast motion at a low rate
+  // a fast motion at a low rate, and a joint in degrees
   EXPECT_EQ(examine(sines(12.0, 20.0, {2.0, 3.0})).second_source.count, 0);
+  Motion degrees = sines(20.0, 20.0, {0.5, 0.35});
+  degrees.q.row(0) *= 180.0 / M_PI;
+  EXPECT_EQ(examine(degrees).second_source.count, 0);
 }
 
 TEST(ExamineSamples, LeavesOutAPublisherThatRepeatsAnotherLater) {
