@@ -157,7 +157,7 @@ void readAxis(const UrdfElement& element, RobotDescription::Joint& joint) {
   }
 }
 
-// A limit that is above zero. Some exporters write -1 where there is none.
+// A limit; none where it is below zero: some exporters write -1.
 double greatest(const UrdfElement& limit, const char* key) {
   const double value = limit.number(key);
   if (value >= 0) return value;

@@ -22,7 +22,7 @@ inline namespace v2 {
 /// and back. A source that moves shows by positions that leave the motion around them, faster than velocities
 /// allow, and return. The marks are those of repeats: such samples say nothing new.
 ///
-/// @throws EvaluationError: one sample in ten belongs to a second source that moves.
+/// @throws EvaluationError: more than one sample in ten belongs to a second source that moves.
 SecondSource markSecondSource(SampleTable& table);
 
 /// Marks samples beside several repeats that are late themselves: positions contradict the velocities on both sides, and

@@ -95,7 +95,7 @@ std::vector<Index> borders(const Path& path) {
 }
 
 constexpr double kAllowed = 1e-3;   // above a limit between points, share of it
-constexpr double kLongest = 600.0;  // s, of motions with limits of jerk
+constexpr double kLongest = 600.0;  // s, of motions with limits of jerk or torque rate
 constexpr int kRefinements = 10;
 constexpr Index kMostFiner = 16;  // times as many points as before refinements
 constexpr int kTries = 2;         // finer grids before a path is refused

@@ -64,8 +64,7 @@ struct Evaluation {
   std::shared_ptr<SampleTable> table;
   AccelerationReport accelerations;  ///< their origin, and findings; the table flags each sample
   Effort effort;                     ///< kAutomatic until compareTorques() settles it
-  /// n; over all samples, but over those that were kept where a second source's are among them; empty without
-  /// efforts.
+  /// n; over all samples, or, if some are of a second source, over those that were kept; empty without efforts.
   std::vector<JointMetrics> errors;
   std::vector<JointMetrics> errors_of_kept;  ///< n; over those that were kept
   std::vector<std::string> notes;  ///< of solver and recording, on efforts, on the samples

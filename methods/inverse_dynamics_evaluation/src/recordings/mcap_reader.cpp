@@ -5,9 +5,8 @@
 /// after another.
 ///
 /// Chunks are opened when their time has come, and chunks that overlap in time are merged, unless the
-/// recorder's clock was set back. A file
-/// without an index of its chunks is read once for it; messages outside of chunks are taken by the
-/// megabyte, as if these were chunks.
+/// recorder's clock was set back. A file without an index of its chunks is read once for it; messages
+/// outside of chunks are taken by the megabyte, as if these were chunks.
 
 #include <algorithm>
 #include <cstddef>

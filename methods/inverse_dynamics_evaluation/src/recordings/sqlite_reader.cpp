@@ -201,7 +201,7 @@ class SqliteReader : public StorageReader {
   std::uint64_t rows_ = 0;
   std::int64_t previous_ = 0, id_ = 0;
   std::size_t connection_ = kNone;  // of id_
-  bool steps_ = false;              // times of reception fall back
+  bool steps_ = false;              // the recorder's clock was set back
   bool done_ = true;
 };
 
