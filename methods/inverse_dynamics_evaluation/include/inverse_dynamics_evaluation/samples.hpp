@@ -10,10 +10,12 @@
 /// Recordings of real robots have faults that spoil a derivative. A rule for each finds it from the
 /// data alone, always reports it, and acts on it unless switched off:
 ///
-/// 1. **Repeated samples.** q, qd and effort are, bit for bit, those of the sample before: the
-///    recorder was faster than the robot, or a state was late. The velocity didn't stand still, so
-///    the repeat is left out of the differentiation. So are samples of a second publisher that stands
-///    still among those of a robot that moves. Two publishers that both move are an error.
+/// 1. **Repeated samples.** q, qd and effort are, bit for bit, those of one of the eight samples
+///    before: the recorder was faster than the robot, a state was late, or a second publisher repeats
+///    the first. The velocity isn't zero, so the repeat is left out of the differentiation. So are
+///    samples of a second publisher that stands still among those of a robot that moves, samples whose
+///    positions leave the motion and return, and late ones beside repeats. Where more than one sample
+///    in ten leaves the motion, two publishers move, which is an error.
 /// 2. **Stamps that don't increase.** Where a clock was set, back or a little forward, the times behind
 ///    it are shifted: one period goes by if positions and velocities confirm that, else a gap. Any other
 ///    sample whose stamp isn't later than all before it is left out of the differentiation.
@@ -156,7 +158,7 @@ struct SampleReport {
 
 /// Applies the rules above: fills the table's flags and instants, takes steps of the clock out of its time. O(N).
 ///
-/// A repeat has the instant of the sample it repeats; one left out for its stamp lies between its
+/// A repeat has the instant of the last sample before that isn't one; one left out for its stamp lies between its
 /// neighbours in the recording. Without efforts, repeats are found by q and qd, and no start
 /// transient is looked for.
 ///
