@@ -235,8 +235,10 @@ TEST_P(RecordingTest, ReadsFilesWithoutMetadataInTheOrderOfTheirNumbers) {
 
   const auto alone = Recording(run + "/run_3" + kind).jointStates();
   EXPECT_EQ(rest(*alone).size(), 100U);
-  EXPECT_THAT(alone->note(),
-              HasSubstr("is one of 12 files of a recording, and read alone; give " + run));
+  EXPECT_THAT(
+      alone->note(),
+      HasSubstr("is read alone; 11 other files beside it may be of the same recording: give " +
+                run));
 
   fs::rename(run + "/run_3" + kind, run + "/other" + kind);
   EXPECT_THAT(errorOfReading(run), HasSubstr("has no metadata.yaml; give one of its files"));

@@ -139,8 +139,9 @@ std::string partNote(const std::string& path) {
     others += other && !recording.empty() && numbered(entry.path()).recording == recording ? 1 : 0;
   }
   if (others == 0) return "";
-  return file.filename().string() + " is one of " + std::to_string(others + 1) +
-         " files of a recording, and read alone; give " + directory.string() + " to read all";
+  return file.filename().string() + " is read alone; " +
+         counted(static_cast<std::int64_t>(others), "other file") +
+         " beside it may be of the same recording: give " + directory.string() + " to read all";
 }
 
 // By what a file begins with, as it may have been renamed; else by its name.
