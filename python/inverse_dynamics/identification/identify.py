@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from itertools import compress, pairwise
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 
 from inverse_dynamics import _core
 from inverse_dynamics.arguments import checked
+from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run, torques_with_gravity
 from inverse_dynamics.evaluation.posture import LOCKED, locked_joints, posture_of, still_joints
 from inverse_dynamics.evaluation.ranges import on_one_turn
@@ -194,7 +196,16 @@ def identify(
             "hold_out": hold_out,
         }
         moving = _without(robot, joints, still.parameters)
-        found = identify(recordings, moving, blocks=blocks, progress=progress, **others, **stated)
+        found = None
+        with suppress(BagError):
+            found = identify(
+                recordings, moving, blocks=blocks, progress=progress, **others, **stated
+            )
+        if found is None:  # of a table that numbers its columns: its samples as they were read
+            logs = [e.log for e in evaluations]
+            moving = replace(moving, columns="", scale=(), sign=(), rate=None)
+            same: RunOptions = {"effort_is": stated.get("effort_is")}
+            found = identify(logs, moving, blocks=blocks, progress=progress, **others, **same)
         own = robot.model is not None or robot.plugin != RIGID_BODY
         more = ("the result isn't compared with the present model, which has all joints",) * own
         return replace(found, notes=(*still.notes, *more, *found.notes))
@@ -213,8 +224,8 @@ def identify(
     notes = tuple(dict.fromkeys((*posture.notes, *unfitted, *found.notes)))
     found = replace(found, drive_gains=gains, notes=notes)
     check_result(found, accept)
-    same: RunOptions = {"effort_is": stated.get("effort_is"), "topic": topic}
-    tests = (held_out_errors(found, test, progress=progress, **same) for test in hold_out)
+    how: RunOptions = {"effort_is": stated.get("effort_is"), "topic": topic}
+    tests = (held_out_errors(found, test, progress=progress, **how) for test in hold_out)
     return replace(found, hold_out=tuple(tests))
 
 

@@ -108,6 +108,15 @@ def test_joints_that_stand_still_are_held(log, tmp_path, capsys, still):
     assert np.sqrt(((computed - expected) ** 2).mean(axis=0)).max() < 0.02 * np.ptp(expected)
 
 
+def test_a_still_joint_is_held_where_columns_are_numbered(log):
+    moves = np.arange(6) != 2
+    q, qd, qdd = np.where(moves, log.q, 0.7), log.qd * moves, motion()[2] * moves
+    efforts = simulated_torques(q, qd, qdd)
+    found = identify({"t": log.time, "q": q, "qd": qd, "tau": efforts}, ROBOT)
+    assert found.notes[0].startswith(f"held, as they stand still: {JOINTS[2]} at 0.7 rad;")
+    assert max(found.held_out["identified"]) < 2 * NOISE
+
+
 def test_a_joint_that_hardly_moves(log, tmp_path):
     q, qd = log.q.copy(), log.qd.copy()
     q[:, 3], qd[:, 3] = 0.7 + 0.02 * q[:, 3], 0.02 * qd[:, 3]
