@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <inverse_dynamics_evaluation/effort.hpp>
 #include <inverse_dynamics_evaluation/run_configuration.hpp>
 #include <inverse_dynamics_solver/coriolis_matrix.hpp>
 #include <inverse_dynamics_solver/energies.hpp>
@@ -410,13 +411,13 @@ py::object describedBy(const Solver& solver) {
 }
 
 std::string rootOf(const Solver& solver) {
-  const std::string stated = textParameter(solver, "root");
+  std::string stated = textParameter(solver, "root");
   if (!stated.empty() || solver.origin().urdf.empty()) return stated;
   return describedBy(solver).attr("root").cast<std::string>();
 }
 
 std::string tipOf(const Solver& solver) {
-  const std::string stated = textParameter(solver, "tip");
+  std::string stated = textParameter(solver, "tip");
   if (!stated.empty() || solver.origin().urdf.empty()) return stated;
   return describedBy(solver).attr("tip")(solver.joints().back()).cast<std::string>();
 }

@@ -66,7 +66,7 @@ double usualPeriod(const SampleTable& table) {
 std::vector<Index> offTheWay(const SampleTable& table) {
   const double period = usualPeriod(table);
   // Farther than joints turn in the meantime.
-  const auto isFar = [&](Index from, Index to, Index periods, double distance) {
+  const auto is_far = [&](Index from, Index to, Index periods, double distance) {
     const double speed = std::max(table.qd.col(from).norm(), table.qd.col(to).norm());
     return distance > std::max(kLeastJump, kJumps * speed * period * static_cast<double>(periods));
   };
@@ -77,7 +77,7 @@ std::vector<Index> offTheWay(const SampleTable& table) {
     if (table.repeated[k]) continue;
     const auto periods = static_cast<Index>(run.size()) + 1;
     const double distance = before < 0 ? 0 : (table.q.col(k) - table.q.col(before)).norm();
-    if (before >= 0 && distance > kLeastJump && isFar(before, k, periods, distance)) {
+    if (before >= 0 && distance > kLeastJump && is_far(before, k, periods, distance)) {
       run.push_back(k);
       if (static_cast<Index>(run.size()) <= kLongestRun) continue;
       ++leaps;
@@ -85,7 +85,7 @@ std::vector<Index> offTheWay(const SampleTable& table) {
     } else {
       for (const Index i : run) {
         const double off = (table.q.col(i) - 0.5 * (table.q.col(before) + table.q.col(k))).norm();
-        if (off > kJumps * distance && isFar(before, k, periods, off)) found.push_back(i);
+        if (off > kJumps * distance && is_far(before, k, periods, off)) found.push_back(i);
       }
     }
     run.clear();

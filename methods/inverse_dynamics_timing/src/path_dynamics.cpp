@@ -144,13 +144,13 @@ void PathDynamics::room(Index k, double z, Room& room) const {
 }
 
 const std::vector<double>& PathDynamics::between(Index k, bool rests) const {
-  static const std::vector<double> middle{0.5}, bend{0.25, 0.5, 0.75},
-      step{1.0 / 64, 1.0 / 16, 0.25, 0.5, 0.75, 15.0 / 16, 63.0 / 64};
+  static const std::vector<double> kMiddle{0.5}, kBent{0.25, 0.5, 0.75},
+      kStepped{1.0 / 64, 1.0 / 16, 0.25, 0.5, 0.75, 15.0 / 16, 63.0 / 64};
   const auto here = dq_.col(k).array(), next = dq_.col(k + 1).array();
-  if (rests || (here.abs().min(next.abs()) < (next - here).abs()).any()) return step;
+  if (rests || (here.abs().min(next.abs()) < (next - here).abs()).any()) return kStepped;
   constexpr double kBend = 0.03;  // of q', relative
   const bool bends = (next - here).square().sum() >= kBend * kBend * here.square().sum();
-  return bends ? bend : middle;
+  return bends ? kBent : kMiddle;
 }
 
 VectorXd PathDynamics::excess(const Eigen::Ref<const VectorXd>& z, bool at_ends) const {

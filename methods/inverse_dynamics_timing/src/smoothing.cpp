@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <vector>
 
 namespace inverse_dynamics_timing {
