@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <chain_dynamics/friction.hpp>
+#include <chain_dynamics/friction_laws/smooth_coulomb.hpp>
+#include <chain_dynamics/friction_laws/viscous_coulomb_offset.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/model_file.hpp>
 #include <cmath>
