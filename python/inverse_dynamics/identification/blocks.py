@@ -29,9 +29,8 @@ FEWEST = 20  # samples that a block can be differentiated with
 
 _ARRAYS = ("time", "instants", "used", "q", "qd", "qdd", "tau", "counts", "rests")  # of a block
 _REST = 0.01  # of each joint's greatest velocity, which a moving arm's joints aren't all below
-_HIGHER = (
-    1.3  # times the cut-off of the recording: a block that chooses more takes that of the recording
-)
+# times the cut-off of the recording: a block that chooses more takes that of the recording
+_HIGHER = 1.3
 
 
 @dataclass(frozen=True)
