@@ -215,8 +215,8 @@ def _each(view: View, _: Floats, own: Floats) -> Mistake | None:
             "they may be motor currents"
         )
         return replace(_CURRENT, reason=reason, value=rounded.tolist(), own=rounded[None])
-    turning = shown & ~view.prismatic
-    if view.prismatic.any() and turning.any():
+    turning, sliding = shown & ~view.prismatic, shown & view.prismatic
+    if turning.any() and sliding.any() and _one(scales[sliding]):
         unit, exact = _unit(float(np.median(scales[turning])))
         if unit and (np.abs(scales[turning] / exact - 1) < _NAMED).all():
             return _scales(view, off, np.where(view.prismatic, rounded, exact), f"in {unit}")
@@ -224,10 +224,15 @@ def _each(view: View, _: Floats, own: Floats) -> Mistake | None:
         return _scales(view, off, rounded, "motor currents in mA")
     # a free number for each joint is no mechanism; one for some of them is
     others = shown & ~off
-    one = float(scales[off].max()) <= _SAME * float(scales[off].min())
-    if not one or not (np.abs(np.log(scales[others])) < np.log(_SAME)).all() or not others.any():
+    as_stated = np.abs(np.log(scales[others])) < np.log(_SAME)
+    if not _one(scales[off]) or not as_stated.all() or not others.any():
         return None
     return _scales(view, off, rounded, "")
+
+
+def _one(scales: Floats) -> bool:
+    """Whether they are one scale."""
+    return float(scales.max()) <= _SAME * float(scales.min())
 
 
 def _are_currents(scales: Floats) -> bool:

@@ -3,16 +3,19 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from inverse_dynamics import evaluate
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[4] / "scripts" / "studies"))
 from causes_study import outcomes_of, shares_of
 from described_arms import OWN, arm_of
-from known_mistakes import real_recordings
+from known_mistakes import Recording, drafted, real_recordings
 from known_mistakes import recordings as recordings_with_mistakes
 
 MOST_WRONG, MOST_MISSED = 0.03, 0.05  # one of so few is 3 %; of the whole set 1 % are wrong
@@ -47,3 +50,16 @@ def test_torques_of_an_arm_worked_by_hand(tmp_path):
     acceleration = np.array([[0.0, 0.0, 2.0, 0.0]])
     tau = arm.torques(q, 0 * q, acceleration)
     np.testing.assert_allclose(tau[0], [0.0, 0.0, 2.1 * (2.0 - 9.81), 0.0], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "scales", "unit"),
+    [("scara", [1000, 1000, 1, 1000], "N mm"), ("gantry", [0.67, 0.62, 0.42, 0.102, 0.102], "")],
+)
+def test_joints_that_slide_have_one_scale(tmp_path, name, scales, unit):
+    """A free scale of each slider is no unit, though the hinge's is that of kgf m."""
+    draft, _ = drafted(arm_of(name, tmp_path), np.random.default_rng(0), fast=True)
+    draft.scale("effort", np.array(scales))
+    recording = Recording(name, draft, mistakes=())
+    text = " ".join(cause.reason for cause in evaluate(*recording.write(tmp_path)).diagnosis)
+    assert re.findall("they are in (.*)", text) == [unit] * bool(unit), text
