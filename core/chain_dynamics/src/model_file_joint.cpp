@@ -65,6 +65,7 @@ struct JointGeometry {
 /// TransZ(d). Standard: U_(i-1) to U_i is RotZ(q + offset) TransZ(d) TransX(a) RotX(alpha): the
 /// joint turns about z of U_(i-1), and E_i stands after the first half.
 JointGeometry readDH(LocatedMap map, Geometry geometry) {
+  map.expect({"a", "d"});
   const double a = map.required("a").number();
   const double d = map.required("d").number();
   const auto X_alpha_a = turnAboutX(angle(map, "alpha")) * shift(a, 0, 0);
@@ -78,6 +79,7 @@ JointGeometry readDH(LocatedMap map, Geometry geometry) {
 
 /// As in a URDF: U_i in U_(i-1) at q = 0, and the joint's axis in U_i.
 JointGeometry readPlacement(LocatedMap map) {
+  map.expect({"xyz", "rpy", "axis"});
   const Transform<double> X = readPose(map);
   const LocatedValue axis = map.required("axis");
   map.rejectOthers();
@@ -141,6 +143,11 @@ bool isUsed(LocatedMap& map, const Coefficient<Law>& coefficient) {
 /// A law with its coefficients by name.
 template <class Law>
 Law readLaw(LocatedMap& map) {
+  std::vector<std::string> required;
+  for (const Coefficient<Law>& coefficient : Law::coefficients()) {
+    if (coefficient.required) required.emplace_back(coefficient.name);
+  }
+  map.expect(required);
   Law law;
   for (const Coefficient<Law>& coefficient : Law::coefficients()) {
     const auto value =
@@ -205,6 +212,7 @@ void readExperience(LocatedMap& map, int schema, JointEntry& entry) {
   }
   if (seen) {
     LocatedMap ranges = seen->map();
+    ranges.expect({"q", "qd", "qdd"});
     entry.seen.push_back({readInterval(ranges.required("q")), readInterval(ranges.required("qd")),
                           readInterval(ranges.required("qdd"))});
     ranges.rejectOthers();
@@ -236,13 +244,15 @@ JointEntry readJoint(const LocatedValue& value, const Conventions& conventions,
   const LocatedValue named = value.named("joint " + entry.joint.name);
   entry.where = named.where();
   LocatedMap map = named.map();
+  const bool placed = conventions.geometry == Geometry::kPlacements;
+  map.expect({"name", "type", placed ? "placement" : "dh"});
   map.required("name");
   entry.joint.type = std::vector<JointType>{
       JointType::kRevolute, JointType::kContinuous,
       JointType::kPrismatic}[map.required("type").choice({"revolute", "continuous", "prismatic"})];
 
   JointGeometry geometry;
-  if (conventions.geometry == Geometry::kPlacements) {
+  if (placed) {
     geometry = readPlacement(map.required("placement").map());
   } else {
     geometry = readDH(map.required("dh").map(), conventions.geometry);
@@ -298,6 +308,7 @@ Eigen::Vector3d readVector(const LocatedValue& value) {
 }
 
 Transform<double> readPose(LocatedMap& map) {
+  map.expect({"xyz", "rpy"});
   const Eigen::Vector3d xyz = readVector(map.required("xyz"));
   return {rotationFromRollPitchYaw(readVector(map.required("rpy"))), xyz};
 }

@@ -75,6 +75,10 @@ TEST(ModelFileError, MissingKeysNameLineAndKey) {
     EXPECT_THAT(fileError(YAML::Dump(node)),
                 AllOf(HasSubstr("joint"), HasSubstr("the key " + key + " is missing")));
   }
+  YAML::Node node = YAML::Load(documentedFile());
+  node["joints"][1].remove("type");
+  node["joints"][1].remove("placement");
+  EXPECT_THAT(fileError(YAML::Dump(node)), HasSubstr("the keys type, placement are missing"));
   EXPECT_THAT(fileError(replaced(documentedFile(), ", fo: 0", "")),
               HasSubstr("joint cart: friction: the key fo is missing"));
   EXPECT_THAT(fileError(replaced(documentedFile(), ", axis: [1, 0, 0]", "")),
