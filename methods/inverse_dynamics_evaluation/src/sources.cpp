@@ -70,9 +70,9 @@ std::vector<Index> offTheWay(const SampleTable& table) {
     const double speed = std::max(table.qd.col(from).norm(), table.qd.col(to).norm());
     return distance > std::max(kLeastJump, kJumps * speed * period * static_cast<double>(periods));
   };
-  std::vector<Index> found, run;
-  std::size_t leaps = 0;  // that don't return
-  Index before = -1;      // the last sample on the way
+  std::vector<Index> found, run, first;  // first: samples before any leap
+  std::size_t leaps = 0;                 // that don't return
+  Index before = -1;                     // the last sample on the way
   for (Index k = 0; k < table.size(); ++k) {
     if (table.repeated[k]) continue;
     const auto periods = static_cast<Index>(run.size()) + 1;
@@ -80,8 +80,14 @@ std::vector<Index> offTheWay(const SampleTable& table) {
     if (before >= 0 && distance > kLeastJump && is_far(before, k, periods, distance)) {
       run.push_back(k);
       if (static_cast<Index>(run.size()) <= kLongestRun) continue;
-      ++leaps;
-      k = run.front();  // the way goes on from there
+      // the way goes on from there, or begins there
+      if (leaps == 0 && static_cast<Index>(first.size()) <= kLongestRun) {
+        found.insert(found.begin(), first.begin(), first.end());
+        first.resize(kLongestRun + 1);
+      } else {
+        ++leaps;
+      }
+      k = run.front();
     } else {
       for (const Index i : run) {
         const double off = (table.q.col(i) - 0.5 * (table.q.col(before) + table.q.col(k))).norm();
@@ -90,7 +96,9 @@ std::vector<Index> offTheWay(const SampleTable& table) {
     }
     run.clear();
     before = k;
+    if (static_cast<Index>(first.size()) <= kLongestRun) first.push_back(k);
   }
+  found.insert(found.end(), run.begin(), run.end());
   // Where most don't, velocities are wrong throughout, or positions: those of a joint in degrees return where
   // it turns back.
   if (leaps > found.size()) found.clear();

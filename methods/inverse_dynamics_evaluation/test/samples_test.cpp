@@ -369,17 +369,21 @@ TEST(ExamineSamples, LeavesOutASecondPublisherThatStandsStill) {
 
 TEST(ExamineSamples, LeavesOutASampleNowAndThenOfAnotherMotion) {
   const Motion motion = sines(100.0, 10.0, {0.5, 1.0});
-  Motion garbled = motion;
-  const std::vector<Eigen::Index> places = {120, 305, 306, 700};
-  for (const Eigen::Index k : places) {
-    garbled.q.col(k).array() += 0.8;
-    garbled.qd.col(k).array() *= -0.5;
+  const Eigen::Index last = motion.count() - 1;
+  for (const std::vector<Eigen::Index>& places : {std::vector<Eigen::Index>{120, 305, 306, 700},
+                                                  {0, 305, last - 1, last},
+                                                  {1, 2, 500, last}}) {
+    Motion garbled = motion;
+    for (const Eigen::Index k : places) {
+      garbled.q.col(k).array() += 0.8;
+      garbled.qd.col(k).array() *= -0.5;
+    }
+    const Examined report = examine(garbled);
+    EXPECT_EQ(report.second_source.count, 4);
+    EXPECT_EQ(report.second_source.first, places[0]);
+    for (const Eigen::Index k : places) EXPECT_FALSE(report.used[k]) << k;
+    EXPECT_EQ(report.used.count(), motion.count() - 4);
   }
-  const Examined report = examine(garbled);
-  EXPECT_EQ(report.second_source.count, 4);
-  EXPECT_EQ(report.second_source.first, 120);
-  for (const Eigen::Index k : places) EXPECT_FALSE(report.used[k]) << k;
-  EXPECT_EQ(report.used.count(), motion.count() - 4);
 
   // a fast motion at a low rate, and a joint in degrees
   EXPECT_EQ(examine(sines(12.0, 20.0, {2.0, 3.0})).second_source.count, 0);
