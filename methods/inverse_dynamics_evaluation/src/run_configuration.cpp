@@ -19,8 +19,12 @@ namespace {
 using chain_dynamics::joined;
 
 /// What errors call the place of a field.
+bool isParameter(const RunConfiguration& robot, const std::string& field) {
+  return robot.file.empty() || robot.parameters_of_node.count(field) > 0;
+}
+
 std::string placeOf(const RunConfiguration& robot, const std::string& field) {
-  return robot.file.empty() ? "parameter '" + field + "'" : robot.file + ": " + field;
+  return isParameter(robot, field) ? "parameter '" + field + "'" : robot.file + ": " + field;
 }
 
 }  // namespace
@@ -77,7 +81,7 @@ EffortOptions effortOptions(const RunConfiguration& robot,
   options.configuration = robot.effort;
   options.drive_gains = driveGains(robot.drive_gains, placeOf(robot, "drive_gains"), solver);
   options.plugin = robot.plugin;
-  if (robot.file.empty()) {
+  if (isParameter(robot, "effort")) {
     options.where = placeOf(robot, "effort");
     options.gains_from = placeOf(robot, "drive_gains");
     options.configured_by = "the node's configuration";

@@ -154,6 +154,9 @@ TEST_F(RunConfigurations, NameTheJointsOfRecordingsInTheOrderOfTheChain) {
   EXPECT_EQ(error({"a"}),
             "arm.yaml: joints: expected 1 names, one per joint of the chain (a), got 2 (x, y)");
   EXPECT_THAT(error({"y", "x"}), StartsWith("arm.yaml: joints: expected the order of the chain"));
+  robot.parameters_of_node = {"joints"};
+  EXPECT_THAT(error({"a"}), StartsWith("parameter 'joints': expected 1 names"));
+  robot.parameters_of_node.clear();
   robot.file.clear();
   EXPECT_THAT(error({"a"}), StartsWith("parameter 'joints': expected 1 names"));
 }

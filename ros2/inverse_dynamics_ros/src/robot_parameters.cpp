@@ -36,11 +36,16 @@ RunConfiguration configurationOf(const Parameters& given) {
   const auto name = givenOf<Text>(given, "robot");
   RunConfiguration robot =
       name ? inverse_dynamics_evaluation::readRunConfiguration(*name) : RunConfiguration();
-  robot.plugin = givenOf<Text>(given, "plugin_name").value_or(robot.plugin);
-  robot.joints = givenOf<std::vector<Text>>(given, "joints").value_or(robot.joints);
-  robot.effort = givenOf<Text>(given, "effort").value_or(robot.effort);
-  robot.drive_gains =
-      givenOf<std::vector<double>>(given, "drive_gains").value_or(robot.drive_gains);
+  const auto replace = [&](const Text& parameter, auto& field) {
+    const auto value = givenOf<std::decay_t<decltype(field)>>(given, parameter);
+    if (!value) return;
+    field = *value;
+    robot.parameters_of_node.insert(parameter);
+  };
+  replace("plugin_name", robot.plugin);
+  replace("joints", robot.joints);
+  replace("effort", robot.effort);
+  replace("drive_gains", robot.drive_gains);
   replaceAccelerations(robot, givenOf<Text>(given, "accelerations"), given.get<double>("cutoff"));
   if (givenOf<Text>(given, "robot_description")) replaceDescription(robot, "");
   return robot;

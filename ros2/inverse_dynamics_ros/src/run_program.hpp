@@ -18,13 +18,16 @@ namespace inverse_dynamics_ros {
 ///     what); 130: interrupted.
 template <class Work>
 int runProgram(int argc, char** argv, const char* name, const Work& work) {
-  rclcpp::init(argc, argv);
   ExitCode code = kExitFine;
+  bool initialized = false;
   try {
+    rclcpp::init(argc, argv);
+    initialized = true;
     work();
   } catch (const std::exception& error) {
-    const Failure failure =
-        rclcpp::ok() ? failureOf(error) : Failure{kExitInterrupted, Interrupted().what()};
+    const Failure failure = initialized && !rclcpp::ok()
+                                ? Failure{kExitInterrupted, Interrupted().what()}
+                                : failureOf(error);
     RCLCPP_FATAL(rclcpp::get_logger(name), "%s", failure.text.c_str());
     code = failure.code;
   }

@@ -20,14 +20,15 @@ bool isOneOf(const std::exception& error) {
 Failure failureOf(const std::exception& error) {
   if (isOneOf<rclcpp::exceptions::InvalidParameterTypeException, rclcpp::ParameterTypeException>(
           error)) {
-    return {kExitUserError, std::string(error.what()) +
-                                " A number with a decimal point (5.0) is a double, without one (5) "
-                                "an integer."};
+    return {kExitUserError,
+            std::string(error.what()) +
+                " A list has brackets: [a]. A number with a decimal point (5.0) is a "
+                "double, without one (5) an integer."};
   }
   const bool repairable = isOneOf<
       UserError, inverse_dynamics_solver::Exception, inverse_dynamics_evaluation::EvaluationError,
       inverse_dynamics_evaluation::ConfigurationError, inverse_dynamics_evaluation::RecordingError,
-      rclcpp::exceptions::InvalidParametersException,
+      rclcpp::exceptions::InvalidParametersException, rclcpp::exceptions::RCLInvalidROSArgsError,
       rclcpp::exceptions::InvalidParameterValueException,
       rclcpp::exceptions::ParameterUninitializedException>(error);
   return {repairable ? kExitUserError : kExitUnexpected, error.what()};

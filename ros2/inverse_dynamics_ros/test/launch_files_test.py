@@ -189,6 +189,18 @@ class TestLaunchFiles(unittest.TestCase):
         self.assertEqual(run.returncode, 2, run.stderr)
         self.assertIn("input_bag", run.stdout + run.stderr)
 
+    def test_say_which_argument_of_a_program_is_wrong(self):
+        command = ["ros2", "run", "inverse_dynamics_ros", "live", "--ros-args", "-p"]
+        for argument, text in {
+            "joints:=": "'-p joints:='",
+            "joints:=a": "parameter 'joints' has invalid type",
+            "joints:=[a,b]": "parameter 'joints': expected 6 names",
+        }.items():
+            words = [*command, argument, "-p", "robot:=ur10_simulated"]
+            run = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertIn(text, run.stderr)
+
     def test_run_the_live_node(self):
         command = ["ros2", "launch", "inverse_dynamics_ros", "live.launch.py"]
         command += [

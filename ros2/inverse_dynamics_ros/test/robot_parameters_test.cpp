@@ -70,6 +70,12 @@ TEST_F(RobotParameters, GivenBesideItReplaceWhatItSays) {
                                    {"input_bag", std::string("bag")}});
   EXPECT_EQ(robot.configuration().effort, "torque");
   EXPECT_EQ(robot.configuration().joints, std::vector<std::string>{"s"});
+  try {
+    inverse_dynamics_evaluation::recordedNames(robot.configuration(), {"a", "b"});
+    FAIL() << "one name for two joints";
+  } catch (const inverse_dynamics_evaluation::ConfigurationError& error) {
+    EXPECT_EQ(std::string(error.what()).substr(0, 29), "parameter 'joints': expected ");
+  }
   EXPECT_EQ(robot.configuration().cutoff, std::nullopt);
   EXPECT_EQ(robot.configuration().drive_gains, std::vector<double>{3}) << "empty: not given";
   const auto solver = robot.makeSolver(robot.description());

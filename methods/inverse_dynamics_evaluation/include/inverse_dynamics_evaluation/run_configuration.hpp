@@ -18,6 +18,7 @@
 #include <inverse_dynamics_solver/parameters.hpp>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct RunConfiguration {
   std::string name;
   std::string description;                       ///< one line
   std::string file;                              ///< where it is from; empty: parameters of a node
+  std::set<std::string> parameters_of_node;      ///< fields that don't come from the file
   std::string plugin;                            ///< `package/Class`
   std::string urdf;                              ///< path
   std::string model;                             ///< path
