@@ -7,7 +7,9 @@ plugin_name, robot_description, root, tip, gravity.
 
 from __future__ import annotations
 
+import sys
 from ast import literal_eval
+from difflib import get_close_matches
 from pathlib import Path
 from signal import SIGINT, SIGKILL, SIGTERM
 from typing import TYPE_CHECKING, Any
@@ -17,6 +19,7 @@ from launch import LaunchDescription
 from launch.actions import (
     DeclareLaunchArgument,
     IncludeLaunchDescription,
+    OpaqueFunction,
     RegisterEventHandler,
 )
 from launch.event_handlers import OnProcessExit
@@ -219,6 +222,25 @@ def numbers(context: LaunchContext, argument: str) -> list[float]:
         ) from None
 
 
+def refusing_others(*actions: Any) -> LaunchDescription:
+    """Launch description that refuses arguments it doesn't declare; `ros2 launch` ignores them."""
+    declared = [action.name for action in actions if isinstance(action, DeclareLaunchArgument)]
+    return LaunchDescription([OpaqueFunction(function=_refuse_others, args=[declared]), *actions])
+
+
+def _refuse_others(context: LaunchContext, declared: list[str]) -> None:
+    here = Path(context.locals.current_launch_file_path).name
+    if here not in [Path(word).name for word in sys.argv]:
+        return  # arguments are those of the file that includes this one
+    for word in context.argv:
+        name = word.partition(":=")[0]
+        if name in declared or name.startswith("launch-prefix"):
+            continue
+        near = get_close_matches(name, declared, n=1)
+        remedy = f"did you mean {near[0]}?" if near else f"expected one of {', '.join(declared)}"
+        raise ValueError(f"argument {name}: {here} doesn't have it; {remedy}")
+
+
 def failing_with_its_node() -> RegisterEventHandler:
     """Have `ros2 launch` end with an error where a process of it did."""
 
@@ -235,9 +257,7 @@ def evaluate_robot(name: str) -> LaunchDescription:
     given = {argument.name: LaunchConfiguration(argument.name) for argument in own}
     evaluation = PythonLaunchDescriptionSource(launch_file("evaluate_solver.launch.py"))
     arguments = {**given, "robot": name}.items()
-    return LaunchDescription(
-        [*own, IncludeLaunchDescription(evaluation, launch_arguments=arguments)]
-    )
+    return refusing_others(*own, IncludeLaunchDescription(evaluation, launch_arguments=arguments))
 
 
 def forward(name: str) -> LaunchDescription:

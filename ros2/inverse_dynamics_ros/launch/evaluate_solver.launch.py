@@ -13,13 +13,13 @@ from inverse_dynamics_ros.launch_files import (
     failing_with_its_node,
     given_strings,
     number,
+    refusing_others,
     sample_arguments,
     solver_arguments,
     solver_parameters,
     string,
     text,
 )
-from launch import LaunchDescription
 from launch.actions import OpaqueFunction
 from launch_ros.actions import Node
 
@@ -53,18 +53,16 @@ def nodes(context):
 
 def generate_launch_description():
     """What `ros2 launch` asks for."""
-    return LaunchDescription(
-        [
-            *bag_arguments(),
-            *solver_arguments(),
-            *sample_arguments(),
-            choice("clock", "Stamps that are the time", CLOCKS, "auto"),
-            argument(
-                "without_rules",
-                "What is found in the samples but not acted upon, comma-separated: repeated, "
-                "non-increasing, time-base, start-transient",
-            ),
-            OpaqueFunction(function=nodes),
-            failing_with_its_node(),
-        ]
+    return refusing_others(
+        *bag_arguments(),
+        *solver_arguments(),
+        *sample_arguments(),
+        choice("clock", "Stamps that are the time", CLOCKS, "auto"),
+        argument(
+            "without_rules",
+            "What is found in the samples but not acted upon, comma-separated: repeated, "
+            "non-increasing, time-base, start-transient",
+        ),
+        OpaqueFunction(function=nodes),
+        failing_with_its_node(),
     )

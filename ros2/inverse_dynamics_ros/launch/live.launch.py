@@ -15,12 +15,12 @@ from inverse_dynamics_ros.launch_files import (
     failing_with_its_node,
     number,
     numbers,
+    refusing_others,
     solver_arguments,
     solver_parameters,
     string,
     text,
 )
-from launch import LaunchDescription
 from launch.actions import OpaqueFunction
 from launch_ros.actions import LoadComposableNodes, Node
 from launch_ros.descriptions import ComposableNode
@@ -65,50 +65,46 @@ def nodes(context):
 
 def generate_launch_description():
     """What `ros2 launch` asks for."""
-    return LaunchDescription(
-        [
-            *solver_arguments(),
-            *effort_arguments(),
-            argument(
-                "cutoff",
-                "Cut-off of the causal filter that accelerations come from [Hz]; they come late by "
-                "1 / (pi cutoff) s",
-                "5.0",
-            ),
-            argument(
-                "external_torques",
-                "Whether external torques are estimated and published",
-                "false",
-                choices=["true", "false"],
-            ),
-            argument(
-                "contacts_file",
-                "contacts.json of `ids contact`: with it, contacts and the wrench at the tip are "
-                "published, too",
-            ),
-            argument(
-                "payload_noise",
-                "Standard deviation of measured - computed torques without a load [N m], "
-                "comma-separated, of each joint or one for all; needed to estimate what the tip carries",
-            ),
-            argument("name", "Name of the node", "live"),
-            argument("namespace", "Namespace of the node and of its topics, one per robot: left"),
-            argument("joint_states", "Topic of the joint states", "joint_states"),
-            choice(
-                "reliability", "Quality of service of joint_states", RELIABILITIES, "best_effort"
-            ),
-            argument(
-                "use_sim_time",
-                "Whether time is that of the topic /clock",
-                "false",
-                choices=["true", "false"],
-            ),
-            argument(
-                "container",
-                "Name of a running component container to load the node into; empty: a process of "
-                "its own",
-            ),
-            OpaqueFunction(function=nodes),
-            failing_with_its_node(),
-        ]
+    return refusing_others(
+        *solver_arguments(),
+        *effort_arguments(),
+        argument(
+            "cutoff",
+            "Cut-off of the causal filter that accelerations come from [Hz]; they come late by "
+            "1 / (pi cutoff) s",
+            "5.0",
+        ),
+        argument(
+            "external_torques",
+            "Whether external torques are estimated and published",
+            "false",
+            choices=["true", "false"],
+        ),
+        argument(
+            "contacts_file",
+            "contacts.json of `ids contact`: with it, contacts and the wrench at the tip are "
+            "published, too",
+        ),
+        argument(
+            "payload_noise",
+            "Standard deviation of measured - computed torques without a load [N m], "
+            "comma-separated, of each joint or one for all; needed to estimate what the tip carries",
+        ),
+        argument("name", "Name of the node", "live"),
+        argument("namespace", "Namespace of the node and of its topics, one per robot: left"),
+        argument("joint_states", "Topic of the joint states", "joint_states"),
+        choice("reliability", "Quality of service of joint_states", RELIABILITIES, "best_effort"),
+        argument(
+            "use_sim_time",
+            "Whether time is that of the topic /clock",
+            "false",
+            choices=["true", "false"],
+        ),
+        argument(
+            "container",
+            "Name of a running component container to load the node into; empty: a process of "
+            "its own",
+        ),
+        OpaqueFunction(function=nodes),
+        failing_with_its_node(),
     )

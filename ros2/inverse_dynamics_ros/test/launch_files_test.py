@@ -58,7 +58,7 @@ def arm_states(joints):
 def launch(*arguments, package="inverse_dynamics_ros"):
     """`ros2 launch PACKAGE ...`, with what it says."""
     return subprocess.run(
-        ["ros2", "launch", package, *arguments],
+        ["ros2", "launch", *filter(None, [package]), *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -154,6 +154,35 @@ class TestLaunchFiles(unittest.TestCase):
         self.assertEqual(run.returncode, 1)
         self.assertIn("effort", run.stdout)
         self.assertFalse((FOLDER / "not_written").exists())
+
+    def test_refuse_an_argument_that_they_do_not_have(self):
+        (FOLDER / "outer.launch.py").write_text(
+            "from inverse_dynamics_ros.launch_files import launch_file\n"
+            "from launch import LaunchDescription\n"
+            "from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription\n"
+            "from launch.launch_description_sources import PythonLaunchDescriptionSource\n"
+            "def generate_launch_description():\n"
+            "    inner = PythonLaunchDescriptionSource(launch_file('evaluate_solver.launch.py'))\n"
+            f"    bags = {{'input_bag': '{FOLDER / 'ur10'}', 'output_bag': '{FOLDER / 'included'}'}}\n"
+            "    return LaunchDescription([DeclareLaunchArgument('cutof'),"
+            " IncludeLaunchDescription(inner, launch_arguments=bags.items())])\n"
+        )
+        robot = [f"input_bag:={FOLDER / 'ur10'}", f"output_bag:={FOLDER / 'not_written'}"]
+        for command in (
+            ["live.launch.py", f"plugin_name:={SOLVER}"],
+            ["evaluate_solver.launch.py", *robot],
+        ):
+            run = launch(*command, "cutof:=3")
+            self.assertEqual(run.returncode, 1, run.stdout)
+            self.assertIn("argument cutof: ", run.stdout)
+            self.assertIn("did you mean cutoff?", run.stdout)
+        run = launch("ur10_real.launch.py", *robot, "speed:=3")
+        self.assertEqual(run.returncode, 1, run.stdout)
+        self.assertIn("doesn't have it; expected one of input_bag, ", run.stdout)
+        self.assertFalse((FOLDER / "not_written").exists())
+        outer = [str(FOLDER / "outer.launch.py"), "robot:=ur10_simulated", "cutof:=3"]
+        run = launch(*outer, package="")
+        self.assertEqual(run.returncode, 0, run.stdout)
 
     def test_evaluate_each_of_the_four_robots(self):
         for name, arm in ROBOTS.items():

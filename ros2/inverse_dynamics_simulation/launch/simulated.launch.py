@@ -12,8 +12,13 @@ from xml.etree import ElementTree
 
 import yaml
 from ament_index_python.packages import get_package_share_directory
-from inverse_dynamics_ros.launch_files import argument, failing_with_its_node, number, text
-from launch import LaunchDescription
+from inverse_dynamics_ros.launch_files import (
+    argument,
+    failing_with_its_node,
+    number,
+    refusing_others,
+    text,
+)
 from launch.actions import ExecuteProcess, OpaqueFunction, RegisterEventHandler
 from launch.event_handlers import OnProcessExit
 from launch_ros.actions import Node
@@ -36,27 +41,25 @@ BROADCASTERS = ["joint_state_broadcaster", "external_wrench_broadcaster"]
 
 def generate_launch_description():
     """Arguments and processes, as `ros2 launch` asks for them."""
-    return LaunchDescription(
-        [
-            argument("robot", "Which arm", "ur10", choices=["ur10", "panda"]),
-            argument(
-                "controller",
-                "inverse_dynamics: computed torque after a joint_trajectory_controller; "
-                "feed_forward: PD and the model's torque after one; gravity_compensation: hand "
-                "guiding; pd_gravity_compensation: PD and gravity after one",
-                "inverse_dynamics",
-                choices=list(CONTROLLERS),
-            ),
-            argument("config", "Parameter file; empty: this package's for the robot"),
-            argument("payload", "Mass at the tip, unknown to the solver [kg]", "0.0"),
-            argument(
-                "bag",
-                "Directory to record /joint_states into, once the controllers are active; it must "
-                "not exist yet. Empty: no recording",
-            ),
-            OpaqueFunction(function=_processes),
-            failing_with_its_node(),
-        ]
+    return refusing_others(
+        argument("robot", "Which arm", "ur10", choices=["ur10", "panda"]),
+        argument(
+            "controller",
+            "inverse_dynamics: computed torque after a joint_trajectory_controller; "
+            "feed_forward: PD and the model's torque after one; gravity_compensation: hand "
+            "guiding; pd_gravity_compensation: PD and gravity after one",
+            "inverse_dynamics",
+            choices=list(CONTROLLERS),
+        ),
+        argument("config", "Parameter file; empty: this package's for the robot"),
+        argument("payload", "Mass at the tip, unknown to the solver [kg]", "0.0"),
+        argument(
+            "bag",
+            "Directory to record /joint_states into, once the controllers are active; it must "
+            "not exist yet. Empty: no recording",
+        ),
+        OpaqueFunction(function=_processes),
+        failing_with_its_node(),
     )
 
 
