@@ -56,7 +56,10 @@ DescribedLimits describedLimits(const std::string& robot_description,
   const RobotDescription robot = described(robot_description);
   for (Eigen::Index j = 0; j < n; ++j) {
     const std::size_t joint = robot.jointIndex(joints[static_cast<std::size_t>(j)]);
-    if (joint == RobotDescription::kNone) continue;
+    if (joint == RobotDescription::kNone) {
+      found.unknown.push_back(joints[static_cast<std::size_t>(j)]);
+      continue;
+    }
     const chain_dynamics::JointLimits& limits = robot.joints[joint].limits;
     found.effort[j] = limits.effort;
     found.jerk[j] = stated(limits.jerk);

@@ -134,6 +134,13 @@ LawOptions lawOptions(const Setup& setup, const std::string& friction_source) {
   options.friction.scale = law.friction.scale;
   options.limits.effort =
       jointNumbers("limits.effort", law.limits.effort, arm.joints, arm.limits.effort);
+  if (law.limits.effort.empty() && !arm.limits.unknown.empty()) {
+    throw InvalidParameterValueException(
+        "parameter 'joints'", "not in the robot description",
+        "its names of the chain's joints (" + joined(arm.solver->jointNames()) + ")",
+        joined(arm.limits.unknown),
+        "set 'joints' to them, or 'limits.effort' if the hardware names its joints otherwise");
+  }
   if (law.limits.effort.empty() && !arm.limits.effort.allFinite()) {
     throw ParameterUninitializedException(
         "parameter 'limits.effort'", "not set",

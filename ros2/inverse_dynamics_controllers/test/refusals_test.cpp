@@ -118,10 +118,23 @@ TEST_F(Refusals, DampingOfARateWithoutAPeriod) {
                 "damping.rate, got nothing; set it, or 'update_rate' [Hz], or 'damping.values'");
 }
 
-TEST_F(Refusals, LimitsOfEffortThatNobodyKnows) {
-  std::vector<std::string> others;
-  for (const std::string& joint : ur10Joints()) others.push_back("left_" + joint);
+TEST_F(Refusals, JointsThatTheRobotDescriptionLacks) {
+  std::vector<std::string> others = ur10Joints();
+  others[1] = "left_shoulder";
+  others[2] = "left_elbow";
   expectRefused(but("joints", rclcpp::ParameterValue(others)),
+                "parameter 'joints': not in the robot description: expected its names of the "
+                "chain's joints (shoulder_pan_joint, shoulder_lift_joint, elbow_joint, "
+                "wrist_1_joint, wrist_2_joint, wrist_3_joint), got left_shoulder, left_elbow; set "
+                "'joints' to them, or 'limits.effort' if the hardware names its joints otherwise");
+}
+
+TEST_F(Refusals, LimitsOfEffortThatNobodyKnows) {
+  std::string description = ur10Description();
+  const std::string limit = " effort=\"330.0\"";
+  ASSERT_NE(description.find(limit), std::string::npos);
+  description.replace(description.find(limit), limit.size(), " effort=\"-1\"");
+  expectRefused(but("robot_description", rclcpp::ParameterValue(description)),
                 "parameter 'limits.effort': not set: expected limits of effort [N m], here or in "
                 "the robot description, got neither for all joints; set it; .inf where the robot "
                 "limits its effort by itself");

@@ -34,9 +34,10 @@ OwnedVector jointNumbers(const std::string& name, const std::vector<double>& val
 
 /// Limits of n joints; infinity where a description states none.
 struct DescribedLimits {
-  ReferenceLimits reference;  ///< of motions
-  OwnedVector effort;         ///< n; N m (prismatic N)
-  OwnedVector jerk;           ///< n; rad/s^3 (prismatic m/s^3)
+  ReferenceLimits reference;           ///< of motions
+  OwnedVector effort;                  ///< n; N m (prismatic N)
+  OwnedVector jerk;                    ///< n; rad/s^3 (prismatic m/s^3)
+  std::vector<std::string> unknown{};  ///< joints that the description lacks
 };
 
 /// Limits of joints from a robot description.
