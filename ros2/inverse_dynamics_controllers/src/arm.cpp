@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arm.hpp"
 
+#include <rcl/arguments.h>
+#include <rcl_yaml_param_parser/parser.h>
+
 #include <chain_dynamics/text.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <rcl_interfaces/msg/parameter_descriptor.hpp>
 #include <rclcpp/exceptions.hpp>
 #include <rclcpp/parameter.hpp>
+#include <rclcpp/parameter_map.hpp>
+#include <set>
 #include <utility>
 
 #include "changing_damping.hpp"
@@ -31,6 +36,49 @@ std::vector<std::string> hardwareNames(const std::string& parameter,
       "parameter '" + parameter + "'", "wrong number of names",
       std::to_string(solvers.size()) + ", in the order of " + joined(solvers),
       std::to_string(given.size()) + " (" + joined(given) + ")", "correct them");
+}
+
+// Names of parameters in sections that other nodes read, too, such as `/**`, and in none of this node alone.
+std::set<std::string> sharedParameters(rclcpp_lifecycle::LifecycleNode& node) {
+  const rclcpp::NodeOptions& options = node.get_node_options();
+  std::vector<const rcl_arguments_t*> sources = {&options.get_rcl_node_options()->arguments};
+  if (options.use_global_arguments()) {
+    const auto context = node.get_node_base_interface()->get_context()->get_rcl_context();
+    sources.push_back(&context->global_arguments);
+  }
+  std::set<std::string> shared, own;
+  for (const rcl_arguments_t* const source : sources) {
+    rcl_params_t* given = nullptr;
+    if (rcl_arguments_get_param_overrides(source, &given) != RCL_RET_OK || given == nullptr)
+      continue;
+    const rclcpp::ParameterMap sections = rclcpp::parameter_map_from(given);
+    rcl_yaml_node_struct_fini(given);
+    for (const auto& [section, parameters] : sections) {
+      const std::string reader = section.substr(section.rfind('/') + 1);
+      if (reader != node.get_name() && reader.find('*') == std::string::npos) continue;
+      for (const rclcpp::Parameter& parameter : parameters) {
+        (reader == node.get_name() ? own : shared).insert(parameter.get_name());
+      }
+    }
+  }
+  for (const std::string& name : own) shared.erase(name);
+  return shared;
+}
+
+// Refuses parameters that the controller doesn't declare; warns of those in sections for other nodes, too.
+void rejectUndeclared(rclcpp_lifecycle::LifecycleNode& node) {
+  const auto& parameters = *node.get_node_parameters_interface();
+  const std::vector<std::string> declared = parameters.list_parameters({}, 0).names;
+  const std::set<std::string> shared = sharedParameters(node);
+  for (const auto& [name, value] : parameters.get_parameter_overrides()) {
+    try {
+      inverse_dynamics_solver::rejectUndeclared({name}, declared);
+    } catch (const InvalidParameterValueException& error) {
+      if (shared.count(name) == 0) throw;
+      RCLCPP_WARN(node.get_logger(), "%s; ignored, since its section is for other nodes, too",
+                  error.what());
+    }
+  }
 }
 
 // Declares parameters that are read by others than this package: by the solver, which alone knows
@@ -78,7 +126,7 @@ ArmSource::ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node, Use 
 }
 
 Setup ArmSource::setup(const std::string& managers_description, unsigned update_rate) const {
-  inverse_dynamics_solver::rejectUndeclared(*node_->get_node_parameters_interface());
+  rejectUndeclared(*node_);
   const ArmParameters parameters = parameters_->get_params();
   const inverse_dynamics_solver::SolverLoader loader;
   if (parameters.plugin_name.empty()) {

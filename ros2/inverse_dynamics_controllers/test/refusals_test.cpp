@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <fstream>
 #include <std_msgs/msg/string.hpp>
 #include <thread>
 
@@ -74,6 +75,26 @@ TEST_F(Refusals, AMisspeltParameter) {
   expectRefused(but("limits.effrot", rclcpp::ParameterValue(Numbers{1.0})),
                 "parameter 'limits.effrot': the node doesn't declare it; did you mean "
                 "'limits.effort'?");
+}
+
+TEST_F(Refusals, OnlyAWarningInASectionForOtherNodesToo) {
+  const std::string file = ::testing::TempDir() + "sections.yaml";
+  const std::vector<std::string> arguments = {"--ros-args", "--params-file", file};
+  std::ofstream(file) << "/**: {ros__parameters: {limits.effrot: [1.0]}}\n"
+                         "another: {ros__parameters: {cutoff: 5.0}}\n";
+  EXPECT_TRUE(configure(good(), arguments)) << log.text();
+  EXPECT_TRUE(
+      log.has("WARN: parameter 'limits.effrot': the node doesn't declare it; did you mean "
+              "'limits.effort'?; ignored, since its section is for other nodes, too"))
+      << log.text();
+}
+
+TEST_F(Refusals, AMisspeltParameterInASectionOfTheController) {
+  const std::string file = ::testing::TempDir() + "own_section.yaml";
+  std::ofstream(file) << "/**: {ros__parameters: {limits.effrot: [1.0]}}\n"
+                         "/**/under_test: {ros__parameters: {limits.effrot: [1.0]}}\n";
+  EXPECT_FALSE(configure(good(), {"--ros-args", "--params-file", file}));
+  EXPECT_TRUE(log.has("ERROR: parameter 'limits.effrot': ")) << log.text();
 }
 
 TEST_F(Refusals, NothingOfWhatTheSpawnerReadsInTheSameFile) {

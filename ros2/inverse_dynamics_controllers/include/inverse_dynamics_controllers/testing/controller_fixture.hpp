@@ -149,12 +149,14 @@ class ControllerFixture : public ::testing::Test {
             {"damping.values", rclcpp::ParameterValue(std::vector<double>{4.0})}};
   }
 
-  bool init(const Parameters& parameters) {
+  /// @param arguments  of the node: `--ros-args --params-file FILE`.
+  bool init(const Parameters& parameters, const std::vector<std::string>& arguments = {}) {
     std::vector<rclcpp::Parameter> overrides;
     for (const auto& [name, value] : parameters) {
       if (value.get_type() != rclcpp::PARAMETER_NOT_SET) overrides.emplace_back(name, value);
     }
-    const rclcpp::NodeOptions options = rclcpp::NodeOptions().parameter_overrides(overrides);
+    const rclcpp::NodeOptions options =
+        rclcpp::NodeOptions().parameter_overrides(overrides).arguments(arguments);
 #ifdef INVERSE_DYNAMICS_CONTROLLERS_HAS_INTERFACE_PARAMS
     controller_interface::ControllerInterfaceParams params;
     params.controller_name = "under_test";
@@ -165,8 +167,8 @@ class ControllerFixture : public ::testing::Test {
 #endif
   }
 
-  bool configure(const Parameters& parameters) {
-    if (!init(parameters)) return false;
+  bool configure(const Parameters& parameters, const std::vector<std::string>& arguments = {}) {
+    if (!init(parameters, arguments)) return false;
     return controller.configure().id() == lifecycle_msgs::msg::State::PRIMARY_STATE_INACTIVE;
   }
 
