@@ -4,6 +4,7 @@
 #include <inverse_dynamics_control/feed_forward.hpp>
 #include <inverse_dynamics_controllers/feed_forward_controller_parameters.hpp>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,7 +13,6 @@
 namespace inverse_dynamics_controllers {
 
 using inverse_dynamics_control::FeedForward;
-using inverse_dynamics_control::FrictionSource;
 using inverse_dynamics_control::JointState;
 using inverse_dynamics_control::LawOptions;
 using inverse_dynamics_control::ModelState;
@@ -28,8 +28,11 @@ ModelState modelState(const feed_forward_controller::Params& params,
                                                                  : ModelState::kReference;
 }
 
-void requireReferenceVelocity(const LawOptions& options, const ReferenceLayout& layout) {
-  if (layout.hasMotion() || options.friction.source != FrictionSource::kReferenceVelocity) return;
+std::string frictionSource(const feed_forward_controller::Params& params,
+                           const ReferenceLayout& layout) {
+  const std::string& source = params.friction.source;
+  if (source == "automatic") return layout.hasMotion() ? "reference_velocity" : "none";
+  if (layout.hasMotion() || source != "reference_velocity") return source;
   throw inverse_dynamics_solver::InvalidParameterValueException(
       "parameter 'friction.source'", "no such velocity",
       "none or measured_velocity, as reference_interfaces has no velocity", "reference_velocity",
@@ -87,8 +90,7 @@ FollowingController::MakeFollower FeedForwardController::declareParameters() {
   return [parameters](const Setup& setup, const reference_parameters::Params& references) {
     const auto params = parameters->get_params();
     const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
-    const LawOptions options = lawOptions(setup, params.friction.source);
-    requireReferenceVelocity(options, layout);
+    const LawOptions options = lawOptions(setup, frictionSource(params, layout));
     return std::make_unique<FeedForwardFollower>(
         setup, referenceInput(setup, layout, references), pdGains(setup),
         FeedForward(setup.arm.solver, modelState(params, layout), options));

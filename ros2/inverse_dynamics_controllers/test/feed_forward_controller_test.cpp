@@ -55,7 +55,9 @@ TEST_F(FeedForwardControllerTest, AddsTheTorqueOfTheReferenceToTheEffortOfAnothe
 }
 
 TEST_F(FeedForwardControllerTest, WithEffortAloneTheModelIsTakenAtTheMeasuredState) {
-  ASSERT_TRUE(start(with({"effort"}))) << log.text();
+  Parameters parameters = with({"effort"});
+  parameters.erase("friction.source");
+  ASSERT_TRUE(start(parameters)) << log.text();
   setReferences(0, pid);
   EXPECT_EQ(update(), return_type::OK);
   const Eigen::VectorXd expected = solver()->getTorques(q, qd, zero) + pid;
