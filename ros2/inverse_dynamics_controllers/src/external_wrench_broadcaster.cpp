@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_controllers/external_wrench_broadcaster.hpp"
 
+#include <algorithm>
 #include <inverse_dynamics_controllers/external_wrench_broadcaster_parameters.hpp>
 #include <limits>
 #include <string>
@@ -89,6 +90,7 @@ struct ExternalWrenchBroadcaster::Configured {
         effort(Eigen::VectorXd::Zero(state.q.size())),
         sensing(setup.arm.solver, optionsOf(setup, params)),
         tolerated(setup.parameters.tolerated_fault_time),
+        tolerated_at_start(std::max(tolerated, params.start_time)),
         report(std::make_shared<WrenchReport>(state.q.size())),
         timer(logEverySecond(setup.node, report)),
         carried(setup),
@@ -99,16 +101,19 @@ struct ExternalWrenchBroadcaster::Configured {
     interfaces.bind(states, {});
     sensing.reset();
     faulty = 0.0;
-    given_up = false;
+    given_up = started = false;
   }
 
   /// Gives up once measurements or the solver have failed for too long; a gap in time is no fault.
   void noteFault(EstimateStatus status, double dt) noexcept {
-    if (status == EstimateStatus::kOk) faulty = 0.0;
+    if (status == EstimateStatus::kOk) {
+      faulty = 0.0;
+      started = true;
+    }
     const bool fault = status != EstimateStatus::kOk && status != EstimateStatus::kStarting &&
                        status != EstimateStatus::kGap;
     if (fault && dt > 0) faulty += dt;
-    if (given_up || !(faulty > tolerated)) return;
+    if (given_up || !(faulty > (started ? tolerated : tolerated_at_start))) return;
     given_up = true;
     report->noteGivenUp(status);
   }
@@ -117,8 +122,8 @@ struct ExternalWrenchBroadcaster::Configured {
   inverse_dynamics_control::JointState state;
   Eigen::VectorXd effort;
   inverse_dynamics_control::ContactSensing sensing;
-  double tolerated, faulty = 0.0;  // s
-  bool given_up = false;
+  double tolerated, tolerated_at_start, faulty = 0.0;  // s
+  bool given_up = false, started = false;              // started: there has been an estimate
   std::shared_ptr<WrenchReport> report;
   rclcpp::TimerBase::SharedPtr timer;
   CarriedBody carried;

@@ -150,6 +150,27 @@ TEST_F(ExternalWrenchBroadcasterTest, StatesThatStayNanEndTheEstimate) {
       << log.text();
 }
 
+TEST_F(ExternalWrenchBroadcasterTest, WaitsForHardwareThatMeasuresNoEffortBeforeTheFirstCommand) {
+  REQUIRE_STATES;
+  ASSERT_TRUE(start(but("start_time", rclcpp::ParameterValue(0.5)))) << log.text();
+  hold();
+  const std::vector<double> effort = hardware.measured_tau;
+  hardware.measured_tau.assign(6, kNan);
+  EXPECT_EQ(run(0.4), return_type::OK);
+  EXPECT_EQ(sensed(), Vector6::Zero());
+  hardware.measured_tau = effort;
+  EXPECT_EQ(run(kSettled), return_type::OK);
+  EXPECT_LT((sensed() - expected).norm(), kExact * push.norm());
+  hardware.measured_tau.assign(6, kNan);
+  EXPECT_EQ(run(0.1), return_type::ERROR);
+}
+
+TEST_F(ExternalWrenchBroadcasterTest, GivesUpWhereNoEffortIsEverMeasured) {
+  ASSERT_TRUE(start(but("start_time", rclcpp::ParameterValue(0.5)))) << log.text();
+  hardware.measured_tau.assign(6, kNan);
+  EXPECT_EQ(run(0.6), return_type::ERROR);
+}
+
 TEST_F(ExternalWrenchBroadcasterTest, BeginsAgainAfterAGapInTime) {
   REQUIRE_STATES;
   ASSERT_TRUE(start(good())) << log.text();
