@@ -10,8 +10,12 @@ namespace inverse_dynamics_ros {
 using diagnostic_msgs::msg::DiagnosticStatus;
 
 LiveDiagnostics::LiveDiagnostics(rclcpp::Node& node, std::string topic, LiveLimits limits)
-    : topic_(std::move(topic)), limits_(limits), updater_(&node) {
-  updater_.setHardwareID("none");
+    : namespace_(node.get_namespace()),
+      topic_(std::move(topic)),
+      limits_(limits),
+      updater_((node.declare_parameter("diagnostic_updater.use_fqn", true), &node)) {
+  if (namespace_.back() != '/') namespace_ += '/';
+  setRobot("unknown");
   updater_.add("solver", [this](Status& status) { reportSolver(status); });
   updater_.add("joint states", [this](Status& status) { reportJointStates(status); });
 }

@@ -34,7 +34,8 @@ struct LiveLimits {
   double min_rate = 0.0;  ///< Hz
 };
 
-/// Tasks of a diagnostic_updater: the solver, the joint states, and others.
+/// Tasks of a diagnostic_updater: the solver, the joint states, and others. Their names begin with the
+/// node's full name, `/left/live: solver`.
 class LiveDiagnostics {
  public:
   LiveDiagnostics(rclcpp::Node& node, std::string topic, LiveLimits limits);
@@ -56,6 +57,9 @@ class LiveDiagnostics {
     solver_text_ = text;
   }
 
+  /// Sets the hardware's id: the node's namespace and the robot.
+  void setRobot(const std::string& robot) { updater_.setHardwareID(namespace_ + robot); }
+
   /// Joints that are missing, or empty.
   void setMissing(const std::string& joints) { missing_ = joints; }
 
@@ -67,6 +71,7 @@ class LiveDiagnostics {
   void reportJointStates(Status& status);
   void summarize(Status& status, double age, double rate) const;
 
+  std::string namespace_;  // with a slash at its end
   std::string topic_;
   LiveLimits limits_;
   LiveCounts counts_, reported_;  // now, and at the last report

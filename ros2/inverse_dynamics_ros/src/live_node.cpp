@@ -142,6 +142,8 @@ class LiveNode::Implementation {
     const std::string text = robot.plugin + ", " + std::to_string(solver->jointCount()) +
                              " joints: " + inverse_dynamics_evaluation::listed(options.joints);
     diagnostics_.setSolver(true, text);
+    const std::string name = robot_.name(robot_description);
+    diagnostics_.setRobot(name.empty() ? robot.plugin : name);
     RCLCPP_INFO(logger(), "solver: %s; accelerations late by %.0f ms", text.c_str(),
                 1e3 * live_->delay());
   }

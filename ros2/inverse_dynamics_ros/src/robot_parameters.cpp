@@ -12,6 +12,7 @@
 #include <rcl_interfaces/msg/parameter_descriptor.hpp>
 #include <rclcpp/parameter.hpp>
 #include <sstream>
+#include <type_traits>
 
 #include "user_error.hpp"
 
@@ -131,6 +132,11 @@ std::shared_ptr<InverseDynamicsSolver> NodeRobot::makeSolver(const std::string& 
 
 std::string NodeRobot::statedLink(const std::string& parameter) const {
   return solver_parameters_.get<std::string>(kSolverNamespace + "." + parameter).value_or("");
+}
+
+std::string NodeRobot::name(const std::string& description) const {
+  const auto robot = configuration_.name.empty() ? described(description) : std::nullopt;
+  return robot ? robot->name : configuration_.name;
 }
 
 std::string NodeRobot::rootLink(const std::string& description) const {

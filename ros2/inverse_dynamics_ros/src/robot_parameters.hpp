@@ -62,6 +62,9 @@ class NodeRobot {
   std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver> makeSolver(
       const std::string& description) const;
 
+  /// Name of the run configuration, else of the description's robot; empty: not known.
+  std::string name(const std::string& description) const;
+
   /// Names of the first and the last link of the chain: as stated, else the description's root and
   /// its only leaf; empty: not known.
   std::string rootLink(const std::string& description) const;

@@ -214,6 +214,9 @@ class TestLiveNode(unittest.TestCase):
         self.description.publish(String(data=PENDULUM))
         proc_output.assertWaitFor("1 joints: swing; accelerations late by 16 ms", timeout=30)
         self.until_diagnosed("solver", DiagnosticStatus.OK, SOLVER)
+        status, _ = self.diagnostics["solver"]
+        self.assertEqual(status.name, "/arm/arm: solver")
+        self.assertEqual(status.hardware_id, "/arm/pendulum")
         self.until(lambda: self.states.get_subscription_count() > 0, "no subscription")
         self.play(100.0, 1.5)
         self.assertGreater(len(self.torques), 30)

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using inverse_dynamics_solver::Parameters;
 
-constexpr const char* kUrdf = R"(<robot name="arm">
+constexpr const char* kUrdf = R"(<robot name="lift">
   <link name="base"/>
   <link name="cart"><inertial><mass value="2"/>
     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
@@ -51,7 +51,7 @@ class RobotParameters : public testing::Test {
 
 TEST_F(RobotParameters, AreARunConfiguration) {
   const NodeRobot robot(Parameters{{"robot", file()}});
-  EXPECT_EQ(robot.configuration().name, "arm");
+  EXPECT_EQ(robot.name(robot.description()), "arm");
   EXPECT_EQ(robot.configuration().cutoff, 7);
   EXPECT_EQ(robot.description(), kUrdf);
   const auto solver = robot.makeSolver(robot.description());
@@ -92,6 +92,7 @@ TEST_F(RobotParameters, AreEnoughWithoutARunConfiguration) {
                                    {"ids.tip", std::string("cart")}});
   EXPECT_EQ(robot.configuration().file, "");
   EXPECT_EQ(robot.makeSolver(robot.description())->jointCount(), 1);
+  EXPECT_EQ(robot.name(robot.description()), "lift");
 }
 
 TEST_F(RobotParameters, NameTheEndsOfTheChain) {
