@@ -51,9 +51,9 @@ class AddTorqueLimitedTiming : public planning_interface::PlanningResponseAdapte
     moveit_msgs::msg::RobotTrajectory planned;
     response.trajectory->getRobotTrajectoryMsg(planned);
     try {
-      PathOptions options;
-      options.slower = slower(request);
-      auto timed = retiming_->timed(planned.joint_trajectory, options);
+      auto timed = retiming_->timed(retiming_->path(planned.joint_trajectory), retiming_->limits(),
+                                    slower(request));
+      timed.header = planned.joint_trajectory.header;
       for (auto& point : timed.points) point.effort.clear();
       const moveit::core::RobotState start = response.trajectory->getFirstWayPoint();
       response.trajectory->setRobotTrajectoryMsg(start, timed);

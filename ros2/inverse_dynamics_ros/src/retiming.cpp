@@ -16,6 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 using inverse_dynamics_evaluation::listed;
+using inverse_dynamics_timing::MotionLimits;
 using inverse_dynamics_timing::Path;
 using inverse_dynamics_timing::Retimed;
 using inverse_dynamics_timing::Trajectory;
@@ -67,45 +68,72 @@ void Retiming::carry(const inverse_dynamics_control::RigidBody& body) {
   load_.advance(0.0);
 }
 
-Retiming::JointTrajectory Retiming::timed(const JointTrajectory& path,
-                                          const PathOptions& options) const {
-  if (!(options.slower >= 1.0)) {
-    throw UserError("slower", "a number of at least 1", std::to_string(options.slower),
-                    "limits of velocity and acceleration are parameters");
-  }
-  const Eigen::MatrixXd points = waypoints(path);
-  const double deviation = options.deviation.value_or(params_.deviation);
-  const Path way = deviation < 0 ? Path::spline(points, options.stops)
-                                 : Path::lines(points, deviation, options.stops);
-  checkRanges(way);
-  inverse_dynamics_timing::RetimeOptions choices;
-  choices.margin = params_.margin;
-  const Retimed fastest = inverse_dynamics_timing::retime(*solver_, way, limits_, choices);
-  if (!fastest) throw UserError(inverse_dynamics_timing::text(fastest.refusal, joints_));
-  JointTrajectory result =
-      sampled(inverse_dynamics_timing::slowed(fastest.trajectory, options.slower));
-  result.header = path.header;
-  return result;
+Path Retiming::path(const JointTrajectory& waypoints, const std::vector<Index>& stops,
+                    std::optional<double> deviation) const {
+  const Eigen::MatrixXd points = pointsOf(waypoints);
+  const double rounding = deviation.value_or(params_.deviation);
+  Path path = rounding < 0 ? Path::spline(points, stops) : Path::lines(points, rounding, stops);
+  checkRanges(path);
+  return path;
 }
 
-// n x m, rad
-Eigen::MatrixXd Retiming::waypoints(const JointTrajectory& path) const {
-  const auto& names = path.joint_names;
+MotionLimits Retiming::limits(const std::vector<std::string>& joints,
+                              const PathLimits& given) const {
+  const std::vector<Index> places = placesOf(joints);
+  MotionLimits limits = limits_;
+  const auto replace = [&](const std::string& name, const std::vector<double>& numbers,
+                           chain_dynamics::OwnedVector& limit) {
+    if (numbers.empty()) return;
+    const auto in_order = inverse_dynamics_control::jointNumbers(name, numbers, joints);
+    if (!(in_order.array() > 0).all()) {
+      throw UserError(name, "numbers above 0", std::to_string(in_order.minCoeff()), "correct it");
+    }
+    limit.resize(in_order.size());
+    for (Index i = 0; i < in_order.size(); ++i)
+      limit[places[static_cast<std::size_t>(i)]] = in_order[i];
+  };
+  replace("torque_limits", given.torque, limits.torque);
+  replace("velocity_limits", given.velocity, limits.velocity);
+  replace("acceleration_limits", given.acceleration, limits.acceleration);
+  replace("jerk_limits", given.jerk, limits.jerk);
+  return limits;
+}
+
+Retiming::JointTrajectory Retiming::timed(const Path& path, const MotionLimits& limits,
+                                          double slower) const {
+  inverse_dynamics_timing::RetimeOptions choices;
+  choices.margin = params_.margin;
+  const Retimed fastest = inverse_dynamics_timing::retime(*solver_, path, limits, choices);
+  if (!fastest) throw UserError(inverse_dynamics_timing::text(fastest.refusal, joints_));
+  return sampled(inverse_dynamics_timing::slowed(fastest.trajectory, slower));
+}
+
+// Where the joints of the names are in the chain.
+std::vector<Index> Retiming::placesOf(const std::vector<std::string>& names) const {
   if (names.size() != joints_.size() ||
       !std::is_permutation(names.begin(), names.end(), joints_.begin())) {
     throw UserError("path", "the joints " + listed(joints_), listed(names),
                     "see the parameter 'joints'");
   }
-  Eigen::MatrixXd points(names.size(), path.points.size());
-  for (std::size_t k = 0; k < path.points.size(); ++k) {
-    const std::vector<double>& q = path.points[k].positions;
-    if (q.size() != names.size()) {
+  std::vector<Index> places;
+  for (const std::string& name : names) {
+    places.push_back(std::find(joints_.begin(), joints_.end(), name) - joints_.begin());
+  }
+  return places;
+}
+
+// n x m, rad
+Eigen::MatrixXd Retiming::pointsOf(const JointTrajectory& waypoints) const {
+  const std::vector<Index> places = placesOf(waypoints.joint_names);
+  Eigen::MatrixXd points(places.size(), waypoints.points.size());
+  for (std::size_t k = 0; k < waypoints.points.size(); ++k) {
+    const std::vector<double>& q = waypoints.points[k].positions;
+    if (q.size() != places.size()) {
       throw UserError("path: point " + std::to_string(k), "a position for each joint",
                       std::to_string(q.size()), "complete it");
     }
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const auto joint = std::find(joints_.begin(), joints_.end(), names[i]) - joints_.begin();
-      points(joint, static_cast<Index>(k)) = q[i];
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      points(places[i], static_cast<Index>(k)) = q[i];
     }
   }
   return points;

@@ -19,11 +19,9 @@
 
 namespace inverse_dynamics_ros {
 
-/// Options of one path [inverse_dynamics_msgs/srv/Retime.srv].
-struct PathOptions {
-  std::vector<Eigen::Index> stops;  ///< waypoints, from 0
-  std::optional<double> deviation;  ///< rad; none: the parameter's
-  double slower = 1.0;              ///< factor of the motion's duration, >= 1
+/// Limits for one path: one number per joint, or one for all; empty: of the parameters.
+struct PathLimits {
+  std::vector<double> torque, velocity, acceleration, jerk;  ///< N m, rad/s, rad/s^2, rad/s^3
 };
 
 /// An arm, its limits, and how paths are made from waypoints.
@@ -36,13 +34,32 @@ class Retiming {
   ///   limit for another number of joints.
   Retiming(const NodeRobot& robot, const std::string& description, const retime::Params& params);
 
-  /// Positions, velocities, accelerations and efforts at the rate, with the header of the path.
+  /// A path through waypoints, of whose points only positions are read.
   ///
-  /// @param path  at least two different waypoints; of its points only positions are read.
-  /// @throws UserError  other joints, not one position per joint, a path that leaves the ranges of the joints,
-  ///   or that can't be held, a motion that is to be faster.
-  /// @throws inverse_dynamics_solver::Exception  what retime() and Path say.
-  JointTrajectory timed(const JointTrajectory& path, const PathOptions& options = {}) const;
+  /// @param deviation  rad; negative: a spline; none: the parameter's.
+  /// @throws UserError  other joints, not one position per joint, a path that leaves their ranges.
+  /// @throws inverse_dynamics_solver::Exception  what Path says.
+  inverse_dynamics_timing::Path path(const JointTrajectory& waypoints,
+                                     const std::vector<Eigen::Index>& stops = {},
+                                     std::optional<double> deviation = {}) const;
+
+  /// The limits of the parameters, and those that are given instead.
+  ///
+  /// @param joints  n; the order of given limits.
+  /// @throws UserError  other joints.
+  /// @throws inverse_dynamics_solver::Exception  another number of limits.
+  inverse_dynamics_timing::MotionLimits limits(const std::vector<std::string>& joints,
+                                               const PathLimits& given) const;
+  const inverse_dynamics_timing::MotionLimits& limits() const { return limits_; }
+
+  /// Positions, velocities, accelerations and efforts of the fastest motion, at the rate.
+  ///
+  /// @param slower  factor of the motion's duration, >= 1.
+  /// @throws UserError  a path along which no motion stays within the limits.
+  /// @throws inverse_dynamics_solver::Exception  what retime() says.
+  JointTrajectory timed(const inverse_dynamics_timing::Path& path,
+                        const inverse_dynamics_timing::MotionLimits& limits,
+                        double slower = 1.0) const;
 
   /// Sets the body that the tip carries on following paths; mass 0: none.
   ///
@@ -54,7 +71,8 @@ class Retiming {
 
  private:
   void describeLimits(const std::string& description);
-  Eigen::MatrixXd waypoints(const JointTrajectory& path) const;
+  std::vector<Eigen::Index> placesOf(const std::vector<std::string>& names) const;
+  Eigen::MatrixXd pointsOf(const JointTrajectory& waypoints) const;
   void checkRanges(const inverse_dynamics_timing::Path& path) const;
   JointTrajectory sampled(const inverse_dynamics_timing::Trajectory& motion) const;
 

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
@@ -51,9 +53,15 @@ Retiming retiming(const retime::Params& params = retime::Params()) {
   return Retiming(robot, kUrdf, params);
 }
 
+JointTrajectory timed(const JointTrajectory& path, const retime::Params& params = retime::Params(),
+                      double slower = 1.0) {
+  const Retiming arm = retiming(params);
+  return arm.timed(arm.path(path), arm.limits(), slower);
+}
+
 std::string refusal(const JointTrajectory& path, const retime::Params& params = retime::Params()) {
   try {
-    retiming(params).timed(path);
+    timed(path, params);
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -61,11 +69,10 @@ std::string refusal(const JointTrajectory& path, const retime::Params& params = 
 }
 
 TEST(Retiming, TakesTheShortestTimeAndFillsInEfforts) {
-  const JointTrajectory timed = retiming().timed(path(0.5));
-  EXPECT_NEAR(duration(timed), kFastest, 0.005 * kFastest);
-  EXPECT_NEAR(timed.points.back().positions[0], 0.5, 1e-9);
-  EXPECT_EQ(timed.header.frame_id, "base");
-  for (const auto& point : timed.points) {
+  const JointTrajectory found = timed(path(0.5));
+  EXPECT_NEAR(duration(found), kFastest, 0.005 * kFastest);
+  EXPECT_NEAR(found.points.back().positions[0], 0.5, 1e-9);
+  for (const auto& point : found.points) {
     EXPECT_NEAR(point.effort[0], 2.0 * point.accelerations[0] + kWeight, 1e-9);
     EXPECT_LT(std::abs(point.effort[0]), 9.0 * 1.005);
     EXPECT_LT(std::abs(point.velocities[0]), 1.005);
@@ -73,9 +80,19 @@ TEST(Retiming, TakesTheShortestTimeAndFillsInEfforts) {
 }
 
 TEST(Retiming, AMotionMayBeSlower) {
-  PathOptions half;
-  half.slower = 2.0;
-  EXPECT_NEAR(duration(retiming().timed(path(0.5), half)), 2 * kFastest, 0.01 * kFastest);
+  EXPECT_NEAR(duration(timed(path(0.5), retime::Params(), 2.0)), 2 * kFastest, 0.01 * kFastest);
+}
+
+TEST(Retiming, TakesLimitsInTheOrderOfThePath) {
+  const NodeRobot robot(inverse_dynamics_solver::Parameters{{"robot", "ur10_simulated"}});
+  const Retiming arm(robot, robot.description(), retime::Params());
+  std::vector<std::string> joints = robot.makeSolver(robot.description())->jointNames();
+  std::reverse(joints.begin(), joints.end());
+  PathLimits given;
+  given.torque = {6, 5, 4, 3, 2, 1};
+  const auto limits = arm.limits(joints, given);
+  for (int j = 0; j < 6; ++j) EXPECT_EQ(limits.torque[j], j + 1);
+  EXPECT_EQ(limits.velocity, arm.limits().velocity);
 }
 
 TEST(Retiming, RefusesWhatCannotBeTimed) {
@@ -129,8 +146,9 @@ class RetimeNodeTest : public testing::Test {
 
 TEST_F(RetimeNodeTest, AnswersWithTheFastestMotion) {
   const Retime::Response done = answer(request(0.5));
-  ASSERT_TRUE(done.success) << done.message;
+  ASSERT_EQ(done.error_code, Retime::Response::SUCCESSFUL) << done.message;
   EXPECT_EQ(done.message, "");
+  EXPECT_TRUE(done.ignored.empty());
   EXPECT_EQ(done.trajectory.header.frame_id, "base");
   EXPECT_NEAR(duration(done.trajectory), kFastest, 0.005 * kFastest);
 }
@@ -145,9 +163,23 @@ TEST_F(RetimeNodeTest, TakesWhatTheRequestSays) {
   wanted.stops = {1};
   EXPECT_NEAR(duration(answer(wanted).trajectory), stopping, 0.005 * stopping);
   wanted.stops.clear();
-  wanted.deviation = {0.0};  // a line goes on straight
-  wanted.slower = 2.0;
+  wanted.shape = Retime::Request::LINES;  // a line goes on straight
+  wanted.velocity_scaling_factor = 0.5;
   EXPECT_NEAR(duration(answer(wanted).trajectory), 2 * kFastest, 0.01 * kFastest);
+  // up with (20 - 4) / 2 m/s^2 to 0.5 m/s, and to rest with (20 + 4) / 2 m/s^2
+  wanted.velocity_scaling_factor = 1.0;
+  wanted.torque_limits = {20.0};
+  wanted.velocity_limits = {0.5};
+  const double limited = 0.5 / 8 + (0.5 - 0.125 / 8 - 0.125 / 12) / 0.5 + 0.5 / 12;
+  EXPECT_NEAR(duration(answer(wanted).trajectory), limited, 0.005 * limited);
+  EXPECT_NEAR(duration(answer(request(0.5)).trajectory), kFastest, 0.005 * kFastest);
+}
+
+TEST_F(RetimeNodeTest, NamesWhatOfThePathIsNotUsed) {
+  Retime::Request wanted = request(0.5);
+  wanted.path.points[0].velocities = {0.0};
+  wanted.path.points[1].time_from_start.sec = 3;
+  EXPECT_EQ(answer(wanted).ignored, (std::vector<std::string>{"velocities", "time_from_start"}));
 }
 
 TEST_F(RetimeNodeTest, CarriesThePayloadOfOneRequest) {
@@ -163,21 +195,35 @@ TEST_F(RetimeNodeTest, CarriesThePayloadOfOneRequest) {
 
 TEST_F(RetimeNodeTest, SaysWhyThereIsNoMotion) {
   const Retime::Response refused = answer(request(1.5));
-  EXPECT_FALSE(refused.success);
+  EXPECT_EQ(refused.error_code, Retime::Response::INVALID_PATH);
   EXPECT_EQ(refused.message.substr(0, 47), "path: joint slide: expected positions from -1.0");
   EXPECT_TRUE(refused.trajectory.points.empty());
-  const auto message = [&](const auto& change) {
+  const auto expectRefused = [&](std::int32_t code, const std::string& text, const auto& change) {
     Retime::Request wrong = request(0.5);
     change(wrong);
-    return answer(wrong).message;
+    const Retime::Response response = answer(wrong);
+    EXPECT_EQ(response.error_code, code) << response.message;
+    EXPECT_NE(response.message.find(text), std::string::npos) << response.message;
   };
-  EXPECT_EQ(message([](auto& wrong) { wrong.slower = 0.5; }).substr(0, 44),
-            "slower: expected a number of at least 1, got");
-  EXPECT_NE(message([](auto& wrong) { wrong.payload.inertia.m = 10.0; }).find("slide"),
-            std::string::npos);
-  EXPECT_NE(message([](auto& wrong) { wrong.payload.header.frame_id = "tool0"; }).find("cart"),
-            std::string::npos);
-  EXPECT_NE(message([](auto& wrong) { wrong.stops = {7}; }).find("7"), std::string::npos);
+  using Codes = Retime::Response;
+  for (const double factor : {0.0, 1.5, std::nan("")}) {
+    expectRefused(Codes::INVALID_REQUEST, "velocity_scaling_factor: expected a number above 0",
+                  [&](auto& wrong) { wrong.velocity_scaling_factor = factor; });
+  }
+  expectRefused(Codes::INVALID_REQUEST, "shape: expected", [](auto& wrong) { wrong.shape = 7; });
+  expectRefused(Codes::INVALID_REQUEST, "shape: expected", [](auto& wrong) {
+    wrong.shape = Retime::Request::LINES;
+    wrong.deviation = -0.1;
+  });
+  expectRefused(Codes::INVALID_REQUEST, "torque_limits", [](auto& wrong) {
+    wrong.torque_limits = {1.0, 2.0};
+  });
+  expectRefused(Codes::INVALID_REQUEST, "velocity_limits: expected numbers above 0",
+                [](auto& wrong) { wrong.velocity_limits = {-1.0}; });
+  expectRefused(Codes::INVALID_REQUEST, "cart",
+                [](auto& wrong) { wrong.payload.header.frame_id = "tool0"; });
+  expectRefused(Codes::INVALID_PATH, "7", [](auto& wrong) { wrong.stops = {7}; });
+  expectRefused(Codes::INFEASIBLE, "slide", [](auto& wrong) { wrong.payload.inertia.m = 10.0; });
 }
 
 }  // namespace
