@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrench_publisher.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <geometry_msgs/msg/wrench.hpp>
 #include <geometry_msgs/msg/wrench_stamped.hpp>
+#include <inverse_dynamics_msgs/msg/contact.hpp>
 #include <rclcpp/create_timer.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
-#include <std_msgs/msg/bool.hpp>
 #include <utility>
 
 #include "latest_value.hpp"
@@ -15,8 +16,8 @@ namespace inverse_dynamics_controllers {
 
 using geometry_msgs::msg::WrenchStamped;
 using inverse_dynamics_control::ContactSensing;
+using inverse_dynamics_msgs::msg::Contact;
 using sensor_msgs::msg::JointState;
-using std_msgs::msg::Bool;
 
 // Estimates of one cycle.
 struct Estimate {
@@ -24,6 +25,8 @@ struct Estimate {
   Eigen::VectorXd torques;
   std::array<double, 6> wrench{};
   bool contact = false;
+  Eigen::Index joint = -1;  // of the contact
+  double excess = 0.0;
 };
 
 namespace {
@@ -50,7 +53,7 @@ struct WrenchPublisher::Outbox {
   JointState torques;
   rclcpp::Publisher<WrenchStamped>::SharedPtr wrench_publisher;
   rclcpp::Publisher<JointState>::SharedPtr torques_publisher;
-  rclcpp::Publisher<Bool>::SharedPtr contact_publisher;  // null: no contacts
+  rclcpp::Publisher<Contact>::SharedPtr contact_publisher;  // null: no contacts
 
   void publish() {
     const Estimate* const estimate = newest.take();
@@ -62,8 +65,13 @@ struct WrenchPublisher::Outbox {
     torques.effort.assign(estimate->torques.begin(), estimate->torques.end());
     torques_publisher->publish(torques);
     if (contact_publisher == nullptr) return;
-    Bool contact;
-    contact.data = estimate->contact;
+    Contact contact;
+    contact.header.stamp = wrench.header.stamp;
+    contact.contact = estimate->contact;
+    if (estimate->contact && estimate->joint >= 0) {
+      contact.joint = torques.name[static_cast<std::size_t>(estimate->joint)];
+    }
+    contact.excess = estimate->excess;
     contact_publisher->publish(contact);
   }
 };
@@ -82,7 +90,7 @@ WrenchPublisher::WrenchPublisher(const std::shared_ptr<rclcpp_lifecycle::Lifecyc
   outbox_.reset(new Outbox{LatestValue<Estimate>(first), std::move(wrench), std::move(torques),
                            node->create_publisher<WrenchStamped>("~/wrench", qos),
                            node->create_publisher<JointState>("~/external_torques", qos),
-                           contacts ? node->create_publisher<Bool>("~/contact", qos) : nullptr});
+                           contacts ? node->create_publisher<Contact>("~/contact", qos) : nullptr});
   timer_ = rclcpp::create_timer(node, node->get_clock(), rclcpp::Duration::from_seconds(1.0 / rate),
                                 [outbox = outbox_] { outbox->publish(); });
 }
@@ -93,7 +101,11 @@ void WrenchPublisher::note(const rclcpp::Time& time, const ContactSensing& sensi
   estimate.nanoseconds = time.nanoseconds();
   estimate.torques = sensing.torques();
   estimate.wrench = sensorWrench(sensing);
-  estimate.contact = sensing.detector() != nullptr && sensing.detector()->contact();
+  if (const auto* const detector = sensing.detector()) {
+    estimate.contact = detector->contact();
+    estimate.joint = detector->joint();
+    estimate.excess = detector->excess();
+  }
   outbox_->newest.publish();
 }
 

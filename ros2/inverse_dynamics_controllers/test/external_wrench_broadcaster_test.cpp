@@ -3,11 +3,11 @@
 
 #include <cmath>
 #include <geometry_msgs/msg/wrench_stamped.hpp>
+#include <inverse_dynamics_msgs/msg/contact.hpp>
 #include <inverse_dynamics_solver/kinematics.hpp>
 #include <inverse_dynamics_solver/payload.hpp>
 #include <semantic_components/force_torque_sensor.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
-#include <std_msgs/msg/bool.hpp>
 
 #include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
 
@@ -218,21 +218,24 @@ TEST_F(ExternalWrenchBroadcasterTest, PublishesWrenchTorquesAndContact) {
   ASSERT_TRUE(start(parameters)) << log.text();
   geometry_msgs::msg::WrenchStamped wrench;
   sensor_msgs::msg::JointState torques;
-  std_msgs::msg::Bool contact;
+  inverse_dynamics_msgs::msg::Contact contact;
   const auto listener = std::make_shared<rclcpp::Node>("listener");
   const auto wrenches = listener->create_subscription<geometry_msgs::msg::WrenchStamped>(
       "under_test/wrench", 10, [&](const geometry_msgs::msg::WrenchStamped& m) { wrench = m; });
   const auto efforts = listener->create_subscription<sensor_msgs::msg::JointState>(
       "under_test/external_torques", 10,
       [&](const sensor_msgs::msg::JointState& m) { torques = m; });
-  const auto contacts = listener->create_subscription<std_msgs::msg::Bool>(
-      "under_test/contact", 10, [&](const std_msgs::msg::Bool& m) { contact = m; });
+  const auto contacts = listener->create_subscription<inverse_dynamics_msgs::msg::Contact>(
+      "under_test/contact", 10, [&](const inverse_dynamics_msgs::msg::Contact& m) { contact = m; });
   executor.add_node(listener);
   hold();
   run(kSettled);
   const auto settled = [&] { return std::abs(wrench.wrench.force.x - expected[0]) < 1e-3; };
-  EXPECT_TRUE(spinUntil([&] { return update() == return_type::OK && settled() && contact.data; }));
+  EXPECT_TRUE(
+      spinUntil([&] { return update() == return_type::OK && settled() && contact.contact; }));
 
+  EXPECT_GT(contact.excess, 0.5);
+  EXPECT_NE(std::find(ur10Joints().begin(), ur10Joints().end(), contact.joint), ur10Joints().end());
   EXPECT_EQ(wrench.header.frame_id, "tool0");
   EXPECT_NEAR(wrench.wrench.torque.z, expected[5], 1e-3);
   // What the robot spends on its surroundings: the sign of all external torques of this library.

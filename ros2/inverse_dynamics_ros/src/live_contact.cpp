@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <inverse_dynamics_solver/kinematics.hpp>
 
 namespace inverse_dynamics_ros {
 
@@ -12,7 +13,8 @@ LiveContact::LiveContact(
     const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver,
     const LiveContactOptions& options)
     : sensing_(solver, options),
-      in_root_(options.wrench_frame == inverse_dynamics_solver::WrenchFrame::kRoot),
+      in_root_(options.wrench_frame == inverse_dynamics_solver::WrenchFrame::kRoot ? solver
+                                                                                   : nullptr),
       state_(solver->jointCount()) {}
 
 bool LiveContact::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
@@ -31,7 +33,19 @@ bool LiveContact::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eig
   state_.qd = qd;
   status_ = sensing_.update(state_, mean_effort_, period);
   ++counts_[static_cast<std::size_t>(status_)];
+  if (hasWrench()) updateWrench();
   return status_ == Status::kOk;
+}
+
+void LiveContact::updateWrench() {
+  if (in_root_ == nullptr) {
+    force_ = -sensing_.wrenchInTip().force;
+    torque_ = -sensing_.wrenchInTip().torque;
+    return;
+  }
+  const auto& kinematics = dynamic_cast<const inverse_dynamics_solver::Kinematics&>(*in_root_);
+  force_ = -sensing_.wrench().force;
+  torque_ = -sensing_.wrench().torque + kinematics.getTipPose(state_.q).p.cross(force_);
 }
 
 // Stamps jitter although samples are equidistant, so the period is the mean of the latest distances,

@@ -21,8 +21,8 @@ struct LiveContactOptions : inverse_dynamics_control::ContactOptions {
   inverse_dynamics_solver::WrenchFrame wrench_frame = inverse_dynamics_solver::WrenchFrame::kTip;
 };
 
-/// From one sample after the other to external torques, the wrench at the tip and contacts, each
-/// exerted by the robot on its surroundings [docs/contact.md].
+/// From one sample after the other to external torques, which the robot exerts on its surroundings
+/// [docs/contact.md], the wrench at the tip, which the surroundings exert on it, and contacts.
 ///
 /// Without an estimate (see EstimateStatus) nothing is known: a contact neither begins nor ends.
 /// Real time: update() allocates nothing, takes no lock, throws nothing, if the solver keeps its
@@ -56,13 +56,10 @@ class LiveContact {
   /// Whether there is a wrench of the last estimate.
   bool hasWrench() const { return tip() != nullptr && status_ == Status::kOk; }
 
-  /// N, N m about the tip's origin, in the axes of LiveContactOptions::wrench_frame.
-  const Eigen::Vector3d& force() const {
-    return in_root_ ? sensing_.wrench().force : sensing_.wrenchInTip().force;
-  }
-  const Eigen::Vector3d& torque() const {
-    return in_root_ ? sensing_.wrench().torque : sensing_.wrenchInTip().torque;
-  }
+  /// N, N m about the origin of LiveContactOptions::wrench_frame, in its axes: what the surroundings exert,
+  /// as a force-torque sensor's.
+  const Eigen::Vector3d& force() const { return force_; }
+  const Eigen::Vector3d& torque() const { return torque_; }
 
   /// Null: no wrench.
   const inverse_dynamics_control::TipWrench* tip() const { return sensing_.tip(); }
@@ -72,9 +69,12 @@ class LiveContact {
 
  private:
   double periodOf(std::int64_t distance);
+  void updateWrench();
 
   inverse_dynamics_control::ContactSensing sensing_;
-  bool in_root_;  // the wrench
+  // Null: the wrench is in the frame of the tip.
+  std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> in_root_;
+  Eigen::Vector3d force_, torque_;
   inverse_dynamics_control::JointState state_;
   Eigen::VectorXd effort_, mean_effort_;  // of the last sample; over the period before it
   bool started_ = false;

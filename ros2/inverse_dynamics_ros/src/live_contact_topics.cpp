@@ -69,9 +69,9 @@ LiveContactTopics::LiveContactTopics(rclcpp::Node& node,
   torques_publisher_ = node.create_publisher<sensor_msgs::msg::JointState>(
       "~/external_torques", rclcpp::QoS(10), overridable<Options>());
   wrench_publisher_ = node.create_publisher<geometry_msgs::msg::WrenchStamped>(
-      "~/external_wrench", rclcpp::QoS(10), overridable<Options>());
-  flag_publisher_ = node.create_publisher<std_msgs::msg::Bool>("~/contact", rclcpp::QoS(10),
-                                                               overridable<Options>());
+      "~/wrench", rclcpp::QoS(10), overridable<Options>());
+  contact_publisher_ = node.create_publisher<inverse_dynamics_msgs::msg::Contact>(
+      "~/contact", rclcpp::QoS(10), overridable<Options>());
 }
 
 LiveContactOptions LiveContactTopics::options(const LiveRobot& robot) const {
@@ -132,7 +132,7 @@ void LiveContactTopics::take(const std_msgs::msg::Header& header, std::int64_t s
                              const LiveTorques& live) {
   const bool estimated = contact_->status() == LiveContact::Status::kOk;
   if (contact_->update(stamp, live.position(), live.velocity(), live.measured())) {
-    torques_.header = header;
+    torques_.header = found_contact_.header = header;
     wrench_.header.stamp = header.stamp;
     publish();
   } else if (estimated && contact_->status() != LiveContact::Status::kOk) {
@@ -155,10 +155,17 @@ void LiveContactTopics::publish() {
     assign(contact_->torque(), wrench_.wrench.torque);
     wrench_publisher_->publish(wrench_);
   }
-  if (contact_->detector() != nullptr) {
-    flag_.data = contact_->detector()->contact();
-    flag_publisher_->publish(flag_);
+  if (const auto* const detector = contact_->detector()) {
+    found_contact_.contact = detector->contact();
+    found_contact_.joint = found_contact_.contact ? contactJoint() : "";
+    found_contact_.excess = detector->excess();
+    contact_publisher_->publish(found_contact_);
   }
+}
+
+const std::string& LiveContactTopics::contactJoint() const {
+  return joints_[static_cast<std::size_t>(
+      std::max<Eigen::Index>(0, contact_->detector()->joint()))];
 }
 
 void LiveContactTopics::report(DiagnosticStatusWrapper& status) {
@@ -203,8 +210,7 @@ void LiveContactTopics::reportContact(DiagnosticStatusWrapper& status) const {
   if (contact_->detector() == nullptr) return;
   const inverse_dynamics_control::ContactDetector& detector = *contact_->detector();
   if (detector.contact()) status.mergeSummary(DiagnosticStatus::OK, "contact");
-  const auto joint = static_cast<std::size_t>(std::max<Eigen::Index>(0, detector.joint()));
-  status.add("contact", detector.contact() ? joints_[joint] : "none");
+  status.add("contact", detector.contact() ? contactJoint() : "none");
   status.add("greatest torque by threshold", detector.excess());
 }
 

@@ -8,12 +8,12 @@
 #include <cstdint>
 #include <diagnostic_updater/diagnostic_updater.hpp>
 #include <geometry_msgs/msg/wrench_stamped.hpp>
+#include <inverse_dynamics_msgs/msg/contact.hpp>
 #include <inverse_dynamics_ros/live_node_parameters.hpp>
 #include <inverse_dynamics_solver/parameters.hpp>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
-#include <std_msgs/msg/bool.hpp>
 #include <std_msgs/msg/header.hpp>
 #include <string>
 #include <vector>
@@ -24,7 +24,7 @@
 
 namespace inverse_dynamics_ros {
 
-/// ~/external_torques, ~/external_wrench, ~/contact.
+/// ~/external_torques, ~/wrench, ~/contact.
 class LiveContactTopics {
  public:
   /// @param given  parameters that the user has set; they take precedence over the file of contacts.
@@ -49,6 +49,7 @@ class LiveContactTopics {
   LiveContactOptions options(const LiveRobot& robot) const;
   const std::string& frame(const LiveRobot& robot) const;
   void publish();
+  const std::string& contactJoint() const;
   void reportWrench(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void reportContact(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
@@ -63,10 +64,10 @@ class LiveContactTopics {
   // Reused, so that nothing is allocated per message.
   sensor_msgs::msg::JointState torques_;
   geometry_msgs::msg::WrenchStamped wrench_;
-  std_msgs::msg::Bool flag_;
+  inverse_dynamics_msgs::msg::Contact found_contact_;
   rclcpp::Publisher<sensor_msgs::msg::JointState>::SharedPtr torques_publisher_;
   rclcpp::Publisher<geometry_msgs::msg::WrenchStamped>::SharedPtr wrench_publisher_;
-  rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr flag_publisher_;
+  rclcpp::Publisher<inverse_dynamics_msgs::msg::Contact>::SharedPtr contact_publisher_;
 };
 
 }  // namespace inverse_dynamics_ros

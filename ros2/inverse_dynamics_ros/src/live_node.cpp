@@ -18,7 +18,7 @@
 #include "live_contact_topics.hpp"
 #include "live_diagnostics.hpp"
 #include "live_load.hpp"
-#include "live_payload_services.hpp"
+#include "live_payload_action.hpp"
 #include "live_torques.hpp"
 #include "overridable.hpp"
 #include "robot_parameters.hpp"
@@ -267,7 +267,7 @@ class LiveNode::Implementation {
   NodeRobot robot_;
   LiveDiagnostics diagnostics_;
   LiveLoad load_;
-  LivePayloadServices payload_;
+  LivePayloadAction payload_;
   std::unique_ptr<LiveContactTopics> contact_;  // null: not enabled
   std::unique_ptr<LiveTorques> live_;           // null until there is a description
   JointState torques_, residual_;               // reused, so that nothing is allocated per message

@@ -9,18 +9,20 @@ from pathlib import Path
 
 import launch_testing
 import rclpy
+from action_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import InertiaStamped, Vector3Stamped, WrenchStamped
+from inverse_dynamics_msgs.action import EstimatePayload
+from inverse_dynamics_msgs.msg import Contact
 from launch import LaunchDescription
 from launch_ros.actions import ComposableNodeContainer, LoadComposableNodes, Node
 from launch_ros.descriptions import ComposableNode
 from launch_testing.actions import ReadyToTest
 from rcl_interfaces.srv import SetParameters
+from rclpy.action import ActionClient
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Imu
-from std_msgs.msg import Bool
-from std_srvs.srv import Trigger
 
 sys.path.insert(0, str(Path(__file__).parent))
 import itertools
@@ -347,8 +349,8 @@ class TestExternalTorques(unittest.TestCase):
         cls.torques, cls.wrenches, cls.flags, cls.diagnostics = [], [], [], {}
         for kind, topic, received in (
             (JointState, "external_torques", cls.torques),
-            (WrenchStamped, "external_wrench", cls.wrenches),
-            (Bool, "contact", cls.flags),
+            (WrenchStamped, "wrench", cls.wrenches),
+            (Contact, "contact", cls.flags),
         ):
             cls.node.create_subscription(
                 kind, f"/touched/touched/{topic}", received.append, SENSOR_DATA
@@ -418,17 +420,20 @@ class TestExternalTorques(unittest.TestCase):
         # The first ones may be lost: topics may not be connected yet.
         self.until(lambda: self.play(0.5) or len(self.torques) > 50, "few torques")
         self.assertLess(max(abs(m.effort[0]) for m in self.torques), 0.1)
-        self.assertFalse(any(m.data for m in self.flags))
+        self.assertFalse(any(m.contact for m in self.flags))
         self.clear()
         self.play(0.5, more_effort=3.0)
         self.assertAlmostEqual(self.last(), 3.0, delta=0.05)
         self.assertEqual(self.torques[-1].name, ["swing"])
         self.assertEqual(self.torques[-1].header, joint_state(self.now).header)
-        self.assertTrue(self.flags[-1].data)
-        wrench = self.wrenches[-1]
+        self.assertTrue(self.flags[-1].contact)
+        self.assertEqual(self.flags[-1].joint, "swing")
+        self.assertAlmostEqual(self.flags[-1].excess, 3.0, delta=0.05)
+        self.assertEqual(self.flags[-1].header, self.torques[-1].header)
+        wrench = self.wrenches[-1]  # as a sensor's: what the surroundings exert
         self.assertEqual(wrench.header.frame_id, "rod")
         self.assertEqual(wrench.header.stamp, stamp(self.now))
-        self.assertAlmostEqual(wrench.wrench.torque.y, 3.0, delta=0.05)
+        self.assertAlmostEqual(wrench.wrench.torque.y, -3.0, delta=0.05)
         self.assertLess(abs(wrench.wrench.force.x), 1e-9)
         self.assertEqual(len(self.torques), len(self.flags))
         self.assertEqual(len(self.torques), len(self.wrenches))
@@ -436,7 +441,8 @@ class TestExternalTorques(unittest.TestCase):
         self.clear()
         self.play(0.5)
         self.assertAlmostEqual(self.last(), 0.0, delta=0.05)
-        self.assertFalse(self.flags[-1].data)
+        self.assertFalse(self.flags[-1].contact)
+        self.assertEqual(self.flags[-1].joint, "")
 
     def test_2_start_softly_after_what_cannot_be_used(self):
         def spoiled(message):
@@ -548,12 +554,28 @@ class TestPayloadEstimate(unittest.TestCase):
         cls.node.destroy_node()
         rclpy.shutdown()
 
-    def call(self, node, service):
-        client = self.node.create_client(Trigger, f"/{node}/{node}/estimate_payload/{service}")
-        self.assertTrue(client.wait_for_service(timeout_sec=30))
-        future = client.call_async(Trigger.Request())
+    def send(self, node, duration=0.0):
+        """Handle of a goal."""
+        client = ActionClient(self.node, EstimatePayload, f"/{node}/{node}/estimate_payload")
+        self.assertTrue(client.wait_for_server(timeout_sec=30))
+        self.feedback = []
+        goal = EstimatePayload.Goal(duration=duration)
+        return self.done(client.send_goal_async(goal, lambda m: self.feedback.append(m.feedback)))
+
+    def until(self, condition, timeout=30.0):
+        end = time.monotonic() + timeout
+        while not condition():
+            self.assertLess(time.monotonic(), end)
+            rclpy.spin_once(self.node, timeout_sec=0.1)
+
+    def done(self, future):
         rclpy.spin_until_future_complete(self.node, future, timeout_sec=30)
         return future.result()
+
+    def canceled(self, goal):
+        result = goal.get_result_async()
+        self.done(goal.cancel_goal_async())
+        return self.done(result)
 
     def move(self, seconds):
         names = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"]
@@ -570,30 +592,53 @@ class TestPayloadEstimate(unittest.TestCase):
             rclpy.spin_once(self.node, timeout_sec=0.01)
 
     def test_1_is_refused_with_a_reason(self):
-        response = self.call("weigher", "stop")
-        self.assertFalse(response.success)
-        self.assertIn("call start before stop", response.message)
-        response = self.call("touched", "start")
-        self.assertFalse(response.success)
-        self.assertIn("parameter 'estimate_payload.noise'", response.message)
-        self.assertTrue(self.call("weigher", "start").success)
-        response = self.call("weigher", "stop")
-        self.assertFalse(response.success)
-        self.assertIn("no estimate: ", response.message)
+        refused = self.done(self.send("touched").get_result_async())
+        self.assertEqual(refused.status, GoalStatus.STATUS_ABORTED)
+        self.assertEqual(refused.result.error_code, EstimatePayload.Result.NOT_READY)
+        self.assertIn("parameter 'estimate_payload.noise'", refused.result.message)
+        first = self.send("weigher")
+        second = self.done(self.send("weigher").get_result_async())
+        self.assertIn("expected one goal at a time", second.result.message)
+        ended = self.canceled(first)
+        self.assertEqual(ended.status, GoalStatus.STATUS_CANCELED)
+        self.assertEqual(ended.result.error_code, EstimatePayload.Result.TOO_SHORT)
+        self.assertIn("no estimate: ", ended.result.message)
 
-    def test_2_is_published_as_controllers_take_it(self):
-        self.assertTrue(self.call("weigher", "start").success)
+    def test_2_is_a_result_and_a_message_as_controllers_take_it(self):
+        result = self.send("weigher", 8.0).get_result_async()
+        self.move(8.5)
+        ended = self.done(result)
+        self.assertEqual(ended.status, GoalStatus.STATUS_SUCCEEDED, ended.result.message)
+        found = ended.result
+        self.assertEqual(found.error_code, EstimatePayload.Result.SUCCESSFUL)
+        self.until(lambda: self.found)
+        self.assertEqual(self.found[-1], found.payload)
+        self.assertEqual(found.payload.header.frame_id, "tool0")
+        self.assertAlmostEqual(found.payload.inertia.m, 3.0, delta=0.1)
+        self.assertAlmostEqual(found.payload.inertia.com.x, 0.02, delta=0.02)
+        self.assertAlmostEqual(found.payload.inertia.com.y, -0.03, delta=0.02)
+        self.assertAlmostEqual(found.payload.inertia.com.z, 0.12, delta=0.02)
+        self.assertAlmostEqual(found.duration, 8.0, delta=0.5)
+        # half widths of 95 % intervals are about two standard deviations, or more
+        w = found.center_of_mass_half_width
+        for i, half_width in enumerate((found.mass_half_width, w.x, w.y, w.z)):
+            deviation = math.sqrt(found.covariance[5 * i])
+            self.assertGreater(half_width, 1.9 * deviation)
+            self.assertLess(half_width, 5 * deviation)
+        self.assertEqual(found.covariance[1], found.covariance[4])
+        self.assertGreater(len(self.feedback), 5)
+        self.assertAlmostEqual(self.feedback[-1].mass, 3.0, delta=0.2)
+        self.assertGreater(self.feedback[-1].duration, self.feedback[0].duration)
+
+    def test_3_ends_when_the_goal_is_canceled(self):
+        self.found.clear()
+        goal = self.send("weigher")
         self.move(8.0)
-        response = self.call("weigher", "stop")
-        self.assertTrue(response.success, response.message)
-        while not self.found:
-            rclpy.spin_once(self.node, timeout_sec=0.1)
-        message = self.found[-1]
-        self.assertEqual(message.header.frame_id, "tool0")
-        self.assertAlmostEqual(message.inertia.m, 3.0, delta=0.1)
-        self.assertAlmostEqual(message.inertia.com.x, 0.02, delta=0.02)
-        self.assertAlmostEqual(message.inertia.com.y, -0.03, delta=0.02)
-        self.assertAlmostEqual(message.inertia.com.z, 0.12, delta=0.02)
+        ended = self.canceled(goal)
+        self.assertEqual(ended.status, GoalStatus.STATUS_CANCELED)
+        self.assertEqual(ended.result.error_code, EstimatePayload.Result.SUCCESSFUL)
+        self.assertAlmostEqual(ended.result.payload.inertia.m, 3.0, delta=0.1)
+        self.until(lambda: self.found)
 
 
 @launch_testing.post_shutdown_test()

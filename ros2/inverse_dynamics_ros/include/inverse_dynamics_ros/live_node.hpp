@@ -17,13 +17,13 @@
 /// | ~/torques           | sensor_msgs/msg/JointState        | out: effort is the computed torque     |
 /// | ~/residual          | sensor_msgs/msg/JointState        | out: effort is measured - computed     |
 /// | ~/external_torques  | sensor_msgs/msg/JointState        | out, if external_torques.enabled       |
-/// | ~/external_wrench   | geometry_msgs/msg/WrenchStamped   | out, then: at the tip                  |
-/// | ~/contact           | std_msgs/msg/Bool                 | out, then: whether something touches   |
-/// | ~/estimated_payload | geometry_msgs/msg/InertiaStamped  | out, latched: of the services          |
+/// | ~/wrench            | geometry_msgs/msg/WrenchStamped   | out, then: on the tip                  |
+/// | ~/contact           | inverse_dynamics_msgs/msg/Contact | out, then: whether something touches   |
+/// | ~/estimated_payload | geometry_msgs/msg/InertiaStamped  | out, latched: of the action            |
 /// | /diagnostics        | diagnostic_msgs/DiagnosticArray   | out                                    |
 // clang-format on
 ///
-/// Services (std_srvs/srv/Trigger): ~/estimate_payload/start, ~/estimate_payload/stop.
+/// Action: ~/estimate_payload, inverse_dynamics_msgs/action/EstimatePayload.
 ///
 /// Messages out have the stamp of the joint state they belong to. Accelerations come from a causal
 /// filter of the velocities, late by 1 / (pi cutoff) s: see online_derivative.hpp. While that
