@@ -4,9 +4,7 @@
 The command line prints the text and ends with exit code 2; a script catches `UserError`.
 """
 
-import os
-
-from inverse_dynamics.wording import TERMINAL, in_python, message
+from inverse_dynamics.wording import message, told
 
 
 class UserError(Exception):
@@ -17,8 +15,7 @@ class UserError(Exception):
     """
 
     def __str__(self) -> str:
-        text = super().__str__()
-        return message(text if TERMINAL in os.environ else in_python(text))
+        return message(told(super().__str__()))
 
 
 class PartialError(UserError):

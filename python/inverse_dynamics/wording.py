@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 TERMINAL = "INVERSE_DYNAMICS_IDS"
-"""Set in the environment of the command `ids` and its workers: errors name its options."""
+"""Set in the environment of the command `ids` and its workers: messages name its options."""
 
 # A command, which stays as it is; or an option, perhaps with its value.
 _OPTION = re.compile(
@@ -31,6 +32,7 @@ _SWITCHES = {"overwrite": "True", "optimise": "True", "no-friction": "False", "f
 _OF_LIMITS = ("torque", "velocity")  # of retime()
 _LISTS = ("scale", "accept", "without-rule", "known-payload", "hold-out")
 _NUMBERS = re.compile(r"[-+.\de]+(,[-+.\de]+)*|[A-Z]+(,[A-Z]+)*")
+_BODY = re.compile(r"([^,]+),([^,]+,[^,]+,[^,]+)")
 _LONGEST_WORD = 1000  # characters
 _LONGEST_TEXT = 10_000
 _WORD = re.compile(rf"\S{{{_LONGEST_WORD + 1},}}")
@@ -126,6 +128,11 @@ def _escape(character: str) -> str:
     return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
+def told(text: str) -> str:
+    """A message as it is told here: with options in a terminal, with arguments of functions in Python."""
+    return text if TERMINAL in os.environ else in_python(text)
+
+
 def in_python(text: str) -> str:
     """A message with arguments of functions in place of options: `columns='time=t'` for `--columns 'time=t'`."""
     return _OPTION.sub(_argument, text).replace("'] accept=['", "', '")
@@ -144,6 +151,9 @@ def _argument(found: re.Match[str]) -> str:
         begins = found.start() == 0 and found.string[found.end() :].startswith(":")
         return name if begins else f"{name}="
     value = value.strip("'")
+    if option == "payload" and (body := _BODY.fullmatch(value)):
+        center = body[2].replace(",", ", ")
+        return f"parameters={{'payload.mass': {body[1]}, 'payload.center_of_mass': [{center}]}}"
     if option == "parameter":
         key, _, number = value.partition("=")
         return f"{name}={{'{key}': {number}}}"

@@ -26,7 +26,7 @@ from inverse_dynamics.diagnosis.arm import ArmModel
 from inverse_dynamics.diagnosis.fit import Fitting
 from inverse_dynamics.diagnosis.pieces import View
 from inverse_dynamics.diagnosis.rival import PAGE, Rival, printed
-from inverse_dynamics.wording import listed
+from inverse_dynamics.wording import listed, told
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -76,6 +76,9 @@ class Cause:
     remedy: str
     mistake: str = ""
     rival: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "remedy", told(self.remedy))
 
     @property
     def text(self) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, get_args
 
 from inverse_dynamics.errors import BagError
+from inverse_dynamics.wording import told
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -60,6 +61,9 @@ class JointLog:
     storage: Storage = "sqlite3"
     effort_is: str = ""  # the meaning that the file's format states, see Effort; "": none
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "notes", tuple(map(told, self.notes)))
 
     @property
     def stamps(self) -> Integers:

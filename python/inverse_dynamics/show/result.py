@@ -31,6 +31,7 @@ from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.joint_log import check_storage
 from inverse_dynamics.show.plots import FORMATS, check_formats, save_figure
 from inverse_dynamics.show.tables import ReportTable
+from inverse_dynamics.wording import told
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -57,6 +58,11 @@ class Result(ABC):
 
     plot: Callable[[], Figure]  # of matplotlib, where there is one; raises MissingPackageError
     page: Callable[[], str]  # HTML, complete in itself, where there is one
+    notes: tuple[str, ...]  # in words, where there are any
+
+    def __post_init__(self) -> None:
+        if "notes" in vars(self):
+            object.__setattr__(self, "notes", tuple(map(told, self.notes)))
 
     @abstractmethod
     def numbers(self) -> dict[str, Any]:

@@ -54,7 +54,7 @@ from inverse_dynamics.simulation.trajectory import (
     read_trajectory,
     trajectory_text,
 )
-from inverse_dynamics.wording import listed
+from inverse_dynamics.wording import listed, told
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -257,7 +257,7 @@ def simulate(
         trajectory_source=source,
         condition_number=condition_of(simulated, chosen, duration),
         settings=settings,
-        notes=tuple(notes),
+        notes=tuple(map(told, notes)),
     )
 
 

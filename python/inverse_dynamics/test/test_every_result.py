@@ -3,6 +3,8 @@
 
 import copy
 import pickle
+import re
+from ast import literal_eval
 from dataclasses import replace
 from functools import cache
 
@@ -125,6 +127,17 @@ def test_an_identified_model_is_loaded_as_a_robot(tmp_path):
         ids.load_robot(tmp_path / "arm.yaml").solver().torques(*states),
         found.solver().torques(*states),
     )
+
+
+def test_the_remedy_of_a_cause_is_an_argument(tmp_path):
+    solver, log = ids.Solver(ROBOT), ids.read_joint_log(stored_recording(ROBOT))
+    solver.set_payload("load", 3.0, center_of_mass=[0.0, 0.02, 0.1])
+    efforts = solver.torques(log.q, log.qd, ids.evaluate(log, ROBOT).qdd)
+    found = ids.evaluate(replace(log, effort=efforts), ROBOT)
+    (cause,) = found.diagnosis
+    (remedy,) = re.findall(r"give parameters=(\{.*?\}),", cause.remedy)
+    assert remedy in found.notes[-1]
+    assert ids.evaluate(found.log, ROBOT, parameters=literal_eval(remedy)).mean_rmse < 0.1
 
 
 def test_a_solver_stands_for_its_robot():

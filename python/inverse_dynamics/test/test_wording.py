@@ -59,6 +59,10 @@ def test_the_text_of_an_error_is_short_and_harmless():
         ("choose --from and --to in", "choose start= and end= in"),
         ("replace it with --overwrite", "replace it with overwrite=True"),
         ("give --accept mass --accept gain", "give accept=['mass', 'gain']"),
+        (
+            "give --payload 2.5,0,0.1,0, or",
+            "give parameters={'payload.mass': 2.5, 'payload.center_of_mass': [0, 0.1, 0]}, or",
+        ),
         ("at --parameter locked_joints.J=...", "at parameters={'locked_joints.J': ...}"),
         ("give gains (ids: --drive-gains), one", "give gains, one"),
         ("with `ros2 topic echo --csv`, or", "with `ros2 topic echo --csv`, or"),

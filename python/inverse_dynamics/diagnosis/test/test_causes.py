@@ -288,7 +288,7 @@ def test_a_mistake_is_named_and_is_a_heading_of_the_page(arm, headings, spoil, k
     assert not cause.mistake or cause.reference in found.text
     assert cause.error_after is None or cause.error_after < min(0.1, 0.5 * cause.error_before)
     # recordings of ROS refuse it
-    assert "--scale time" not in cause.remedy or "of a table: --scale time" in cause.remedy
+    assert "scale=['time" not in cause.remedy or "of a table: scale=['time" in cause.remedy
 
 
 def test_a_joint_at_rest_is_in_degrees_as_the_others_are(arm):
@@ -296,7 +296,7 @@ def test_a_joint_at_rest_is_in_degrees_as_the_others_are(arm):
     resting = np.arange(len(samples.joints)) == len(samples.joints) - 1
     still = {"q": np.where(resting, 1.5, samples.q), "qd": np.where(resting, 0.0, samples.qd)}
     found = compare(positions_in_degrees(replace(samples, **still)), model)
-    assert found.causes[0].remedy == "convert positions to rad: give --scale q=deg"
+    assert found.causes[0].remedy == "convert positions to rad: give scale=['q=deg']"
 
 
 def test_rounded_efforts_are_at_no_limit(arm):
@@ -336,7 +336,7 @@ def test_gravity_that_is_taken_off_is_found(arm):
     assert only(compare(spoiled, model)).kind == "no_gravity"
     right = model_of(name, without_gravity=True)
     assert {cause.kind for cause in compare(spoiled, right).causes} <= {"friction"}
-    assert only(compare(samples, right)).remedy == "give --effort-is torque"
+    assert only(compare(samples, right)).remedy == "give effort_is='torque'"
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.0])
@@ -346,7 +346,7 @@ def test_a_mount_is_found(arm, gravity, speed):
     cause = only(compare(recorded(name, torques_of(name, gravity), speed=speed), model))
     assert cause.kind == "gravity"
     np.testing.assert_allclose(cause.value, gravity, atol=0.3)
-    assert f"--gravity {','.join(f'{x:g}' for x in cause.value)}" in cause.remedy
+    assert f"gravity=({', '.join(f'{x:g}' for x in cause.value)})" in cause.remedy
 
 
 @pytest.mark.parametrize(("center", "kind"), [((0, 0, 0.1), "payload"), ((0.12, 0, 0.08), "tool")])
@@ -401,7 +401,7 @@ def test_friction_that_efforts_lack_is_told(arm, friction, told):
         torques=lambda *motion: model.torques(*motion) + rubbing(*motion[:2]),
     )
     found = compare(recorded(name, friction=friction), rubs)
-    assert ["--no-friction" in cause.remedy for cause in found.causes] == [True] * told
+    assert ["friction=False" in cause.remedy for cause in found.causes] == [True] * told
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.02])

@@ -99,7 +99,7 @@ def test_an_arm_at_rest_is_held_where_it_is(tmp_path, urdf, make):
     assert max(error.rmse for error in result.errors_of_kept) < 0.05  # N m, of 100; the filter's
     assert about_joints(result) == [
         "joints beside the chain are held where the recording has them (mean): left -1.2 rad, grip "
-        "0.02 m; another position: --parameter locked_joints.JOINT=..."
+        "0.02 m; another position: parameters={'locked_joints.JOINT': ...}"
     ]
     # `ids payload` and `ids contact` open the solver again
     q = result.log.q[:5]

@@ -672,7 +672,7 @@ def test_a_slow_clock_is_mended_as_the_message_says(tmp_path, torques):
     table = table_of(torques)
     write_table(file, {**table, "time": table["time"] / 1.3})
     found = evaluate(file, "ur10_simulated")
-    (remedy,) = re.findall(r"of a table: --scale (time=\S+)", found.notes[-1])
+    (remedy,) = re.findall(r"of a table: scale=\['(time=\S+)'\]", found.notes[-1])
     mended = evaluate(file, "ur10_simulated", scale=[remedy])
     assert mended.diagnosis == ()
     assert mended.mean_rmse < 0.1 * found.mean_rmse
