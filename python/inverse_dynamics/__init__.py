@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import RetimeOptions as RetimeOptions
     from inverse_dynamics._core import Solver as Solver
     from inverse_dynamics._core import available_solvers as available_solvers
+    from inverse_dynamics.comparison.comparison import Comparison as Comparison
+    from inverse_dynamics.comparison.comparison import compare as compare
     from inverse_dynamics.contacts.contacts import Contacts as Contacts
     from inverse_dynamics.contacts.contacts import find_contacts as find_contacts
     from inverse_dynamics.diagnosis.diagnose import diagnose as diagnose
@@ -82,6 +84,7 @@ _MODULES = {  # and the names that users know
     "_core": (
         *("FastModel", "JointPath", "MotionLimits", "RetimeOptions", "Solver", "available_solvers"),
     ),
+    "comparison.comparison": ("Comparison", "compare"),
     "contacts.contacts": ("Contacts", "find_contacts"),
     "diagnosis.diagnose": ("diagnose",),
     "errors": ("UserError",),

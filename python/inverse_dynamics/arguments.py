@@ -190,9 +190,11 @@ def _is(value: Any, kind: str) -> bool:
         return len(value) == len(kinds) and all(map(_fits, value, kinds))
     if name in ("dict", "Mapping"):
         return hasattr(value, "keys") and all(isinstance(key, str) for key in value)
-    if name in ("DataFrame", "JointLog"):  # of pandas or polars, which needn't be there
+    if name in ("DataFrame", "JointLog", "Evaluation"):  # modules that needn't be there
         named = isinstance(value, np.ndarray) and value.dtype.names is not None
-        return named or name in [base.__name__ for base in type(value).__mro__]
+        return (named and name == "DataFrame") or name in [
+            base.__name__ for base in type(value).__mro__
+        ]
     return isinstance(value, getattr(sys.modules.get("inverse_dynamics._core"), kind, object))
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Evaluations side by side: solvers or models on the same recording.
 
-comparison = compare([read_evaluation("urdf"), read_evaluation("identified")])
+comparison = ids.compare([read_evaluation("urdf"), read_evaluation("identified")])
 comparison.rmse          # (runs, n) N m
 """
 
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.arguments import checked
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.figure import run_color, runs_figure
 from inverse_dynamics.evaluation.page import assumptions, report_run
@@ -139,12 +140,21 @@ class Comparison(ResultDirectory):
         return self.evaluations[0].joint_names
 
 
+@checked
 def compare(evaluations: Sequence[Evaluation], labels: Sequence[str] = ()) -> Comparison:
     """Put evaluations of the same recording side by side.
 
     labels: what to call them; empty: by what differs (solver, robot, friction, accelerations).
     Raises UserError: fewer than two, other recordings, other meanings of their efforts, other
     numbers of labels, or labels that are the same.
+
+    Examples
+    --------
+    >>> from inverse_dynamics import compare, evaluate
+    >>> from inverse_dynamics.demo.demo import stored_recording
+    >>> urdf, real = (evaluate(stored_recording("ur10_simulated"), name) for name in ("ur10_simulated", "ur10_real"))
+    >>> compare([urdf, real]).rmse.shape  # runs, joints
+    (2, 6)
     """
     if len(evaluations) < 2:
         raise UserError(f"compare: expected two evaluations or more, got {len(evaluations)}")

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.arguments import checked
 from inverse_dynamics.diagnosis.arm import arm_model
 from inverse_dynamics.diagnosis.compare import compare, meaning_of_efforts
 from inverse_dynamics.diagnosis.pieces import pieces_of
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.run import Run
 
 
+@checked
 def diagnose(evaluation: Evaluation) -> Evaluation:
     """The same with the likely causes of its errors, the last of its notes; efforts are doubted with them.
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from example_robots import UR10
 
-from inverse_dynamics import Solver, UserError, _core, evaluate, identify, retime
+from inverse_dynamics import Solver, UserError, _core, compare, diagnose, evaluate, identify, retime
 from inverse_dynamics.arguments import _fits, check_call, checked, signature_of
 from inverse_dynamics.contact import ContactDetector, EstimatorOptions
 from inverse_dynamics.control import ComputedTorque, Gains, LawOptions
@@ -21,6 +21,10 @@ Q = np.zeros(6)
 
 
 WRONG = {
+    "diagnose: argument evaluation: expected Evaluation, got {}": lambda s: diagnose({}),
+    "compare: argument evaluations: expected Sequence[Evaluation], got ['urdf']": (
+        lambda s: compare(["urdf"])
+    ),
     "Solver: argument plugin: expected Robot | str | PathLike[str], got 3": lambda s: Solver(3),
     "Solver: argument tpi: unknown; did you mean tip?": lambda s: Solver(UR10, tpi="tool0"),
     "Solver: argument friction: expected bool | None, got 'no'": lambda s: Solver(
