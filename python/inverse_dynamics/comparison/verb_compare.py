@@ -25,6 +25,7 @@ examples:
 results, written whole or not at all:
   comparison.png    measured torque and that of each run, over time; with --figures also .svg, .pdf
   comparison.json   root mean square errors of each joint and run
+  series.npz        all of it, for Comparison.load() of Python
   report.html       all runs on one page
 """
 

@@ -43,12 +43,11 @@ from inverse_dynamics.evaluation.evaluation import (
 from inverse_dynamics.evaluation.run import RunOptions, of_run
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.model_errors import LEAST_GAIN, read_model_errors
-from inverse_dynamics.show.result import PAGE, SERIES, ResultDirectory, files_of
+from inverse_dynamics.show.result import PAGE, ResultDirectory, files_of
 from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from typing import Any
 
     from typing_extensions import Unpack
 
@@ -98,7 +97,7 @@ class Contacts(ResultDirectory):
     All is what the robot exerts on its surroundings.
     """
 
-    contents = files_of("contacts.json", "contacts", SERIES, PAGE)
+    contents = files_of("contacts.json", "contacts", PAGE)
     numbers, lines, plot, page = contact_numbers, contact_lines, contact_figure, contact_page
 
     evaluation: Evaluation
@@ -124,12 +123,6 @@ class Contacts(ResultDirectory):
     def inputs(self) -> tuple[Path | None, ...]:
         """The recording and the robot's files."""
         return self.evaluation.bag, *self.evaluation.robot.files
-
-    def arrays(self) -> dict[str, Any]:
-        """Of each sample."""
-        names = ["time", "torques", "valid", "contact"]
-        names += ["wrenches", "unseen"] if self.wrenches is not None else []
-        return {name: getattr(self, name) for name in names}
 
 
 class ContactOptions(RunOptions, total=False):

@@ -40,7 +40,8 @@ results, written whole or not at all:
   contacts.json           contacts; thresholds, and how they were chosen
   report.html             a page: contacts, the robot in motion, its external torques
   contacts.png            external torques, thresholds, contacts; with --figures also .svg, .pdf
-  series.npz              time, torques, valid, contact, wrenches, unseen, for numpy.load()
+  series.npz              time, torques, valid, contact, wrenches, unseen, for numpy.load(); all of it, for
+                          Contacts.load() of Python
 """
 
 

@@ -24,7 +24,7 @@ from inverse_dynamics.evaluation.bands import read_band
 from inverse_dynamics.evaluation.exports import series_columns
 from inverse_dynamics.evaluation.ranges import outside_of_seen
 from inverse_dynamics.evaluation.run import Run, RunOptions, open_run
-from inverse_dynamics.evaluation.samples import MASKS, SampleReport
+from inverse_dynamics.evaluation.samples import SampleReport
 from inverse_dynamics.evaluation.tables import FITTED, evaluation_table, heading
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.outputs.files import write_text
@@ -35,7 +35,7 @@ from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.recordings.sketch import has_samples_of
 from inverse_dynamics.robots.arm import Arm
 from inverse_dynamics.robots.robots import Robot
-from inverse_dynamics.show.result import PAGE, SERIES, ResultDirectory, files_of
+from inverse_dynamics.show.result import PAGE, ResultDirectory, files_of
 from inverse_dynamics.show.tables import error_columns
 
 if TYPE_CHECKING:
@@ -63,7 +63,6 @@ CAUSE = "likely cause of the error: "
 """Prefix of the note that states a diagnosis."""
 
 SCHEMA = 4
-RECORDED = ("header_stamps", "receive_stamps", "q", "qd", "effort")
 
 _MOST_JOINTS = 12  # of a text on one screen
 
@@ -88,7 +87,6 @@ class Evaluation(ResultDirectory):
         "evaluation.json",
         "torques",
         "metrics.json",
-        SERIES,
         "bag/metadata.yaml",
         "bag/bag.db3*",
         "bag/bag.mcap",
@@ -111,11 +109,11 @@ class Evaluation(ResultDirectory):
     errors_of_kept: tuple[JointError, ...]  # over samples.kept, the valid samples
     effort: Effort = field(default_factory=Effort)  # what recorded efforts mean
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
-    joint_types: tuple[str, ...] = ()  # as Solver.joint_types; not in files
+    joint_types: tuple[str, ...] = ()  # as Solver.joint_types
     fitted: bool = False  # whether the model was fitted to samples of this recording
     band: Floats | None = None  # (N, n) half the width of the model's 95 % band; None: not known
     run: Run | None = field(default=None, compare=False)  # what was evaluated; not in files
-    causes: tuple[Cause, ...] | None = None  # those that `explained` has found; not in files
+    causes: tuple[Cause, ...] | None = None  # those that `explained` has found
 
     @property
     def coverage(self) -> Floats | None:
@@ -194,18 +192,8 @@ class Evaluation(ResultDirectory):
         """The recording and the robot's files."""
         return self.bag, *self.robot.files
 
-    def arrays(self) -> dict[str, Any]:
-        """Samples, not copied: as recorded, computed, masks."""
-        computed = ["time", "qdd", "measured", "computed"]
-        computed += [] if self.band is None else ["band"]
-        return {
-            **{name: getattr(self.log, name) for name in RECORDED},
-            **{name: getattr(self, name) for name in computed},
-            **{name: getattr(self.samples, name) for name in MASKS},
-        }
-
     def write_more(self, directory: Path, storage: Storage | None, progress: Progress) -> None:
-        """Write the recording, and evaluation.json: all that the other files lack."""
+        """Write the recording, and evaluation.json: what was assumed."""
         found = self.explained
         log, torques = found.log, (found.computed, found.measured)
         write_torques(
@@ -231,13 +219,6 @@ class Evaluation(ResultDirectory):
             "recording": {name: getattr(log, name) for name in recording},
         }
         write_text(directory / self.contents.mark, json_text(about))
-
-    @staticmethod
-    def load(directory: Path | str) -> Evaluation:
-        """The evaluation that save() wrote; without what the fields say isn't in files. Raises OutputError."""
-        from inverse_dynamics.evaluation.files import read_evaluation
-
-        return read_evaluation(directory)
 
     def __getstate__(self) -> dict[str, Any]:
         """All that files hold: a copy has no run, whose solver can't be copied."""

@@ -3,20 +3,14 @@
 
 from __future__ import annotations
 
-import json
-import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from inverse_dynamics._core import Accelerations, Effort, JointError, Verdict
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.evaluation.evaluation import RECORDED, SCHEMA, Evaluation, evaluate
+from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
 from inverse_dynamics.evaluation.run import RunOptions, overridden
 from inverse_dynamics.installation.extras import require
 from inverse_dynamics.outputs.files import written_whole
-from inverse_dynamics.outputs.plain import read_back
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.joint_log import check_storage
 from inverse_dynamics.robots.robots import Robot, load_robot
@@ -32,7 +26,6 @@ if TYPE_CHECKING:
 
 MARK = Evaluation.contents.mark
 MARK_OF_SEVERAL = "recordings.json"  # see many_evaluations.py
-_PER_JOINT = ("q", "qd", "effort", "qdd", "measured", "computed", "band")
 _MOST_ON_A_PAGE = 3_000_000  # samples: 1 s, 170 MiB; 60 bytes more for each
 
 
@@ -93,61 +86,7 @@ def read_evaluation(directory: Path | str) -> Evaluation:
     """An evaluation that save() wrote. Raises OutputError."""
     directory = Path(directory)
     _check_marked(directory)
-    try:
-        about = json.loads((directory / MARK).read_text(encoding="utf-8"))
-        if about["schema"] != SCHEMA:
-            raise OutputError(
-                f"{directory / MARK}: expected schema {SCHEMA}, got {about['schema']}; evaluate again"
-            )
-        metrics = json.loads((directory / "metrics.json").read_text(encoding="utf-8"))
-        with np.load(directory / "series.npz", allow_pickle=False) as series:
-            arrays = {name: series[name] for name in series.files}
-        return _read_back(about, metrics, arrays)
-    except OutputError:
-        raise
-    except Exception as error:  # of files that were edited or damaged, whatever their readers raise
-        raise OutputError(
-            f"{directory}: isn't a complete evaluation ({type(error).__name__}: {error}); evaluate "
-            "again"
-        ) from error
-
-
-def _read_back(
-    about: dict[str, Any], metrics: dict[str, Any], arrays: dict[str, Any]
-) -> Evaluation:
-    """The evaluation that files hold. Raises ValueError, TypeError, KeyError."""
-    recorded = {name: arrays[name] for name in RECORDED}
-    verdict = about["effort"]["verdict"]
-    parts = {
-        **arrays,
-        **about,
-        "robot": Robot(**about["robot"]),
-        "accelerations": Accelerations(**about["accelerations"]),
-        "effort": Effort(**{**about["effort"], "verdict": verdict and Verdict(**verdict)}),
-        "log": {**about["recording"], **recorded},
-        "samples": {**about["sampling"], **arrays},
-        "errors": [_joint_error(joint) for joint in metrics["joints"]],
-        "errors_of_kept": [_joint_error(joint) for joint in metrics["kept"]["joints"]],
-    }
-    evaluation: Evaluation = read_back(Evaluation, parts, "evaluation")
-    samples, joints = len(evaluation.log.header_stamps), len(evaluation.log.joint_names)
-    for name, array in evaluation.arrays().items():
-        shape = (samples, joints) if name in _PER_JOINT else (samples,)
-        if array.shape != shape or not samples:
-            raise ValueError(f"{name}: expected the shape {shape}, got {array.shape}")
-    counts = {name: getattr(evaluation, name) for name in ("joint_names", "units", "errors")}
-    counts["kept"] = evaluation.errors_of_kept
-    if evaluation.effort.meaning == "current":
-        counts["drive_gains"] = evaluation.effort.drive_gains
-    for name, entries in counts.items():
-        if len(entries) != joints or not joints:
-            raise ValueError(f"{name}: expected {joints}, one per joint, got {len(entries)}")
-    return evaluation
-
-
-def _joint_error(joint: dict[str, Any]) -> JointError:
-    values: dict[str, Any] = {k: math.nan if v is None else v for k, v in joint.items()}
-    return JointError(**values)
+    return Evaluation.load(directory)
 
 
 def _check_marked(directory: Path) -> None:

@@ -39,6 +39,7 @@ results, written together or not at all; Ctrl-C leaves nothing:
   motion.yaml                    the motion, for `ids simulate --trajectory`
   motion_joint_trajectory.yaml   trajectory_msgs/JointTrajectory, whose first point is the start pose,
                                  3 s after the start: move the arm there first, that path is not checked
+  motion.npz                     all of it, for ExcitationResult.load() of Python
 """
 
 

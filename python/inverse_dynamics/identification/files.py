@@ -4,8 +4,9 @@
 arm.yaml         run configuration: `ids evaluate RECORDING --robot arm.yaml`
 arm_model.yaml   the model: rigid bodies, friction, 95 % band and range of the data (docs/model_file.md)
 arm_model.json   what the model may be wrong by, for `ids payload` and `contact`
-arm.json         all values
+arm.json         all numbers
 arm.html         the report's page
+arm.npz          the Identification, for Identification.load()
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ class IdentificationFiles(NamedTuple):
     """The files of an identification."""
 
     robot: Path
+    series: Path
     model: Path
     uncertainty: Path
     figures: Path
@@ -90,17 +92,17 @@ def model_file_text(found: Identification, name: str) -> str:
 
 def run_configuration_text(found: Identification, files: Sequence[Path]) -> str:
     """The identified robot, for --robot of every verb. Raises RobotError."""
-    named = IdentificationFiles(*files)
+    file, model, _, figures, page = files
     robot, gains = found.robot, found.model.drive_gains
     names = ", ".join(path.name for path in found.recordings)
     identified = replace(
         robot,
-        name=named.robot.stem,
+        name=file.stem,
         description=f"{robot.name}, identified from {names}",
         plugin=RIGID_BODY,
-        model=named.model,
+        model=model,
         friction=True,
         drive_gains=robot.drive_gains if gains is None else tuple(gains.tolist()),
-        source=f"identified from {names}: {named.page.name}, {named.figures.name}",
+        source=f"identified from {names}: {page.name}, {figures.name}",
     )
-    return robot_text(identified, named.robot)
+    return robot_text(identified, file)

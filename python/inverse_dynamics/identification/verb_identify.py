@@ -57,6 +57,7 @@ results, all of them or none:
   arm_model.json          what the model may be wrong by, for `ids payload` and `contact`
   arm.html                page: the robot in motion, measured and predicted torques, influence of data and prior
   arm.json                all numbers
+  arm.npz                 all of it, for Identification.load() of Python
 """
 
 _OF_RECORDINGS = ("effort_is", "topic", "start", "end")  # arguments of identify()
@@ -175,13 +176,14 @@ def run(arguments: argparse.Namespace) -> None:
     texts = {"--urdf-out": urdf_text, "--mjcf-out": mjcf_text, "--ur": friction_request}
     exports = {file: texts[option](found) for option, file in more.items()}
     found.save(arguments.out, overwrite=overwrite, more=exports)
-    robot_file, model, uncertainty, figures, page = files
+    robot_file, series, model, uncertainty, figures, page = files
     names: list[Line] = [
         ("robot", f"{robot_file}: `ids evaluate RECORDING --robot {robot_file}`"),
         ("model", model),
         ("uncertainty", f"{uncertainty}: for `ids payload` and `contact`"),
         ("page", page),
         ("figures", figures),
+        ("for Python", series),
         ("also", list(more.values())),
     ]
     show(arguments, found.numbers(), [*files, *more.values()], [*found.lines(), *names])

@@ -40,6 +40,7 @@ results, all of them or none:
                   --payload, for `payload:` of a run configuration, for the controllers
   payload.json    the same with intervals, covariance, offsets, noise and errors of each joint
   payload.html    a page: the load, the robot in motion, its torques with and without the load
+  payload.npz     all of it, for Payload.load() of Python
   payload.png     measured minus computed torques with and without the load
 """
 

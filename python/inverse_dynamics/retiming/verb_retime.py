@@ -29,8 +29,9 @@ examples:
       the band that holds 95 % of measured torques stays within limits
 
 The output directory is a recording of the trajectory with efforts; beside it a table, numbers, a
-figure, and report.html: the robot moving beside itself under one acceleration limit. Limits of
-torque, velocity, acceleration and jerk are those of the robot description unless they are given.
+figure, series.npz (all of it, for Retimed.load() of Python), and report.html: the robot moving
+beside itself under one acceleration limit. Limits of torque, velocity, acceleration and jerk are
+those of the robot description unless they are given.
 """
 
 

@@ -2,10 +2,11 @@
 """What a feature gives back: numbers, lines for the screen, tables, a figure, a page, and the files of all that.
 
 class Contacts(ResultDirectory):  # a frozen dataclass without a __repr__ of its own
-    contents = files_of("contacts.json", "contacts", SERIES, PAGE)
+    contents = files_of("contacts.json", "contacts", PAGE)
     numbers, lines, plot, page = contact_numbers, contact_lines, contact_figure, contact_page
 
 find_contacts(...).save("contacts")
+found = Contacts.load("contacts")
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from inverse_dynamics.outputs.files import (
     written_whole,
 )
 from inverse_dynamics.outputs.plain import json_text
+from inverse_dynamics.outputs.stored import restored, stored
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.joint_log import check_storage
 from inverse_dynamics.show.plots import FORMATS, check_formats, save_figure
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from matplotlib.figure import Figure
+    from typing_extensions import Self
 
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Storage
@@ -47,9 +50,11 @@ if TYPE_CHECKING:
     Line = ReportTable | tuple[str, Texts]
 
 T = TypeVar("T")
+R = TypeVar("R")
 
 PAGE = "report.html"
 SERIES = "series.npz"
+_SERIES_OF = "{stem}.npz"
 _MOST_LINES, _LONGEST_LINE = 10, 110  # of repr()
 
 
@@ -85,13 +90,10 @@ class Result(ABC):
 
 
 class ResultDirectory(Result):
-    """A result whose files are those of a directory."""
+    """A result whose files are those of a directory; SERIES holds all of it."""
 
     contents: ClassVar[Contents]
     data: ClassVar[str] = ""  # file of the numbers, where it isn't the mark of `contents`
-    arrays: Callable[
-        [], dict[str, Any]
-    ]  # samples, for numpy.savez(), where SERIES is among the files
 
     def write_more(self, directory: Path, storage: Storage | None, progress: Progress) -> None:
         """Write what other results don't have."""
@@ -141,6 +143,11 @@ class ResultDirectory(Result):
         with whole as directory:
             self.write(directory, figures, storage=storage, progress=progress)
 
+    @classmethod
+    def load(cls, directory: Path | str) -> Self:
+        """The result that save() wrote into a directory. Raises OutputError."""
+        return _loaded(cls, Path(directory) / SERIES)
+
     def write(
         self,
         directory: Path,
@@ -154,8 +161,7 @@ class ResultDirectory(Result):
         files = self.contents.files
         self.write_more(directory, storage, progress)
         write_text(directory / (self.data or self.contents.mark), json_text(self.numbers()))
-        if SERIES in files:
-            np.savez(directory / SERIES, **self.arrays())
+        np.savez(directory / SERIES, **stored(self))
         if PAGE in files and page:
             write_text(directory / PAGE, self.page())
         if figures:
@@ -168,20 +174,20 @@ class ResultDirectory(Result):
 class ResultFiles(Result):
     """A result whose files lie beside each other: NAME.yaml, and others that are named after it."""
 
-    # Of the others; {stem}, {suffix}: those of NAME.yaml; {figure}: a format.
+    # Of the others, but NAME.npz, which holds all of it; {stem}, {suffix}: those of NAME.yaml; {figure}: a format.
     names: ClassVar[tuple[str, ...]]
     reader: ClassVar[str | None] = None  # what takes NAME.yaml, in words; None: any suffix will do
 
     @abstractmethod
     def texts(self, files: Sequence[Path]) -> Iterable[str]:
-        """Contents of the files that are no figures, in their order."""
+        """Contents of the files that are texts, in their order."""
 
     def test(self, fresh: Sequence[Path]) -> None:
         """Raise UserError where the files, which are in a work folder, can't be used."""
 
     @classmethod
     def files(cls, out: Path | str, figures: Sequence[str] = ()) -> tuple[Path, ...]:
-        """NAME.yaml and the others, figures last. Raises OutputError."""
+        """NAME.yaml, NAME.npz and the others, figures last. Raises OutputError."""
         out = Path(out)
         if cls.reader is not None and out.suffix not in (".yaml", ".yml"):
             raise OutputError(
@@ -190,7 +196,7 @@ class ResultFiles(Result):
         parts = {"stem": out.stem, "suffix": out.suffix}
         names = (
             name.format(**parts, figure=figure)
-            for name in cls.names
+            for name in (_SERIES_OF, *cls.names)
             for figure in (dict.fromkeys(figures) if "{figure}" in name else ("",))
         )
         return out, *map(out.with_name, names)
@@ -240,22 +246,45 @@ class ResultFiles(Result):
         options = {f"{file}": file for file in more}
         self.check(out, overwrite=overwrite, figures=figures, more=options, inputs=self.inputs())
         files = self.files(out)
-        texts = {**dict(zip(files, self.texts(files), strict=True)), **more}
+        main, series, *others = files
+        of_texts = (main, *others)
+        texts = {**dict(zip(of_texts, self.texts(of_texts), strict=True)), **more}
         drawn = self.files(out, figures)[len(files) :]
         targets = [*files[1:], *drawn, *more, files[0]]  # last the one that names the others
         with files_written_whole(targets) as places:
             fresh = dict(zip(targets, places, strict=True))
             for file, text in texts.items():
                 write_text(fresh[file], text)
+            with fresh[series].open("wb") as opened:
+                np.savez(opened, **stored(self))
             if drawn:
                 save_figure(self.plot, *map(fresh.__getitem__, drawn))
-            self.test([fresh[file] for file in files])
+            self.test([fresh[file] for file in of_texts])
+
+    @classmethod
+    def load(cls, out: Path | str) -> Self:
+        """The result that save() wrote, by its NAME.yaml. Raises OutputError."""
+        return _loaded(cls, cls.files(out)[1])
+
+
+def _loaded(kind: type[R], file: Path) -> R:
+    made = f"written by {kind.__name__}.save() or `ids`"
+    if not file.is_file():
+        raise OutputError(f"{file}: no such file; expected one {made}")
+    try:
+        with np.load(file, allow_pickle=False) as arrays:
+            return restored(kind, arrays)
+    except Exception as error:  # of files that are damaged or older, whatever their readers raise
+        raise OutputError(
+            f"{file}: expected a result of this version {made}, got another one "
+            f"({type(error).__name__}: {error}); compute it again"
+        ) from error
 
 
 def files_of(mark: str, figure: str, *more: str, added: Sequence[str] = ()) -> Contents:
-    """Files of a result's directory: numbers in `mark`, a figure of that name in any format, more."""
+    """Files of a result's directory: numbers in `mark`, SERIES, a figure of that name in any format, more."""
     drawn = (f"{figure}.{suffix}" for suffix in FORMATS)
-    return Contents(mark, (mark, *more, *drawn), tuple(added))
+    return Contents(mark, (mark, SERIES, *more, *drawn), tuple(added))
 
 
 def texts_of(lines: Iterable[T | tuple[str, Texts]]) -> Iterator[T | tuple[str, str]]:

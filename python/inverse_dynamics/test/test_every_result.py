@@ -13,7 +13,10 @@ import pytest
 
 import inverse_dynamics as ids
 from inverse_dynamics.demo.demo import stored_recording
+from inverse_dynamics.excitation.excitation import ExcitationOptions
 from inverse_dynamics.outputs.plain import plain
+from inverse_dynamics.outputs.stored import stored
+from inverse_dynamics.show.result import ResultDirectory, ResultFiles
 
 ROBOT = "ur10_simulated"
 WAYPOINTS = [[0.0] * 6, [0.5] * 6, [1.0, 0.2, 0.4, 0, 0, 0]]
@@ -41,6 +44,8 @@ RESULTS = {
     "estimate_payload": lambda: ids.estimate_payload(ids.read_joint_log(loaded()), ROBOT),
     "identify": lambda: ids.identify(rough(), ROBOT, hold_out=[stored_recording(ROBOT)]),
     "retime": lambda: ids.retime(WAYPOINTS, ROBOT),
+    "excite": lambda: ids.excite(ROBOT, options=ExcitationOptions(duration=6.0, iterations=6)),
+    "compare": lambda: ids.compare([RESULTS["evaluate"]()] * 2, ("a", "b")),
     "trajectory_torques": lambda: ids.trajectory_torques(trajectory(), ROBOT),
     "simulate": simulated,
     "read_joint_log": rough,
@@ -81,8 +86,7 @@ def trajectory():
 def content(value):
     """All of it that can be compared."""
     if hasattr(value, "numbers"):
-        arrays = value.arrays() if hasattr(value, "arrays") else {}
-        return plain(value.numbers()), plain(arrays)
+        return plain(value.numbers()), plain(stored(value))
     if hasattr(value, "states"):
         return plain(value.states(np.linspace(0, 10, 50)))
     if hasattr(value, "torques"):
@@ -113,10 +117,15 @@ def test_results_have_files(made, tmp_path):
         )
         made.save(out)
         assert out.exists()
-    if isinstance(made, ids.Evaluation):
-        loaded = ids.Evaluation.load(tmp_path / "result.yaml")
-        assert (loaded.errors, loaded.notes[:1]) == (made.errors, made.notes[:1])
-        assert plain(loaded.arrays()) == plain(made.arrays())
+    if isinstance(made, ResultDirectory | ResultFiles):
+        again = type(made).load(out)
+        assert content(again) == content(made)
+        if hasattr(made, "page"):
+            assert again.page() == made.page()
+        again.save(tmp_path / "again.yaml", figures=())
+        other = ids.Retimed if isinstance(made, ids.Contacts) else ids.Contacts
+        with pytest.raises(ids.UserError, match=r"series.npz: (no such file|expected a result of)"):
+            other.load(out)
 
 
 def test_an_identified_model_is_loaded_as_a_robot(tmp_path):

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
 import os
-import runpy
-from dataclasses import make_dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,9 +9,7 @@ from example_evaluations import make_evaluation
 
 from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
 from inverse_dynamics._core import Effort, Verdict
-from inverse_dynamics.errors import OutputError, UserError
-from inverse_dynamics.evaluation.evaluation import SCHEMA
-from inverse_dynamics.outputs import plain
+from inverse_dynamics.errors import OutputError
 
 FILES = {
     "bag",
@@ -53,20 +50,6 @@ def test_a_result_is_read_back_whole(result, evaluation):
         )
     assert read.log.frame_id == "base"
     np.testing.assert_array_equal(read.log.receive_stamps, evaluation.log.receive_stamps)
-
-
-@pytest.mark.parametrize(
-    ("kind", "array"),
-    [("Floats", np.ones(2)), ("Integers", np.arange(2)), ("Mask", np.ones(2, dtype=bool))],
-)
-def test_arrays_are_read_back_whatever_numpys_own_annotation_is(monkeypatch, kind, array):
-    # That of NumPy 2.5 is an alias: as of this stand-in, its origin isn't ndarray.
-    monkeypatch.setattr("numpy.typing.NDArray", list)
-    read_back = runpy.run_path(plain.__file__)["read_back"]
-    holder = make_dataclass("Holder", [("array", kind)])
-    assert read_back(holder, {"array": array}, "holder").array is array
-    with pytest.raises(ValueError, match=r"holder.array: expected ndarray, got "):
-        read_back(holder, {"array": array.astype(complex)}, "holder")
 
 
 def test_currents_are_kept_beside_the_torques_that_they_mean(tmp_path):
@@ -142,95 +125,18 @@ def test_a_directory_of_something_else_is_no_result(tmp_path):
         read_evaluation(tmp_path / "elsewhere")
 
 
-@pytest.mark.parametrize("file", ["metrics.json", "series.npz"])
-def test_an_incomplete_result_is_an_error(tmp_path, evaluation, file):
+def test_an_incomplete_result_is_an_error(tmp_path, evaluation):
     write_evaluation(evaluation, tmp_path / "result", figures=())
-    os.truncate(tmp_path / "result" / file, 20)
-    with pytest.raises(OutputError, match="isn't a complete evaluation"):
+    os.truncate(tmp_path / "result/series.npz", 20)
+    with pytest.raises(OutputError, match="expected a result of this version .*; compute it again"):
         read_evaluation(tmp_path / "result")
-
-
-def test_a_result_of_another_version_is_an_error(tmp_path, evaluation):
-    write_evaluation(evaluation, tmp_path / "result", figures=())
-    file = tmp_path / "result/evaluation.json"
-    file.write_text(file.read_text().replace(f'"schema": {SCHEMA}', '"schema": 70'))
-    with pytest.raises(OutputError, match=f"expected schema {SCHEMA}, got 70; evaluate again"):
-        read_evaluation(tmp_path / "result")
-
-
-def edited(kind):
-    """What somebody may have put in place of a value of JSON by hand."""
-    return {
-        "null": None,
-        "text": "x",
-        "list": [],
-        "mapping": {},
-    }[kind]
-
-
-def paths_of(data, path=()):
-    """Paths of all values in JSON; of a list, its first."""
-    yield path
-    if isinstance(data, dict):
-        for key, value in data.items():
-            yield from paths_of(value, (*path, key))
-    elif isinstance(data, list) and data:
-        yield from paths_of(data[0], (*path, 0))
-
-
-def use(directory, *, page=True):
-    """What report, compare and export do with a result. page: the slow part too."""
-    from inverse_dynamics.comparison.comparison import compare
-    from inverse_dynamics.evaluation.exports import series_columns
-    from inverse_dynamics.evaluation.page import report_run
-    from inverse_dynamics.evaluation.tables import evaluation_table
-    from inverse_dynamics.show.page import render_page
-
-    read = read_evaluation(directory)
-    evaluation_table(read)
-    series_columns(read)
-    compare([read, read], ("a", "b"))
-    if page:
-        render_page("title", [report_run(read)])
 
 
 @pytest.fixture(scope="module")
 def plain_result(tmp_path_factory):
-    """A result without a description, and with a verdict: it can be shown, and has every kind of entry."""
-    effort = Effort("current", "found from the data", (2.0,), Verdict("current", sure=True))
-    plain = make_evaluation(samples=60, joints=1, effort=effort)
-    plain = replace(plain, robot=replace(plain.robot, urdf=None))
     target = tmp_path_factory.mktemp("plain") / "result"
-    write_evaluation(plain, target, figures=())
-    use(target)
+    write_evaluation(make_evaluation(samples=60, joints=1), target, figures=())
     return target
-
-
-@pytest.mark.parametrize("kind", ["null", "text", "list", "mapping"])
-@pytest.mark.parametrize("file", ["evaluation.json", "metrics.json"])
-def test_any_entry_that_was_edited_is_an_error_or_does_no_harm(plain_result, file, kind):
-    target = plain_result / file
-    text = target.read_text()
-    refused = 0
-    try:
-        for k, path in enumerate(paths_of(json.loads(text))):
-            data = json.loads(text)
-            if not path:
-                data = edited(kind)
-            else:
-                *above, last = path
-                place = data
-                for key in above:
-                    place = place[key]
-                place[last] = edited(kind)
-            target.write_text(json.dumps(data))
-            try:
-                use(plain_result, page=k % 10 == 0)
-            except UserError:
-                refused += 1
-    finally:
-        target.write_text(text)
-    assert refused >= 10
 
 
 SERIES = ["q", "effort", "computed", "header_stamps", "kept"]
@@ -246,11 +152,11 @@ def test_series_that_were_edited_are_an_error(plain_result, name):
     try:
         for changed in wrong:
             np.savez(target, **{**arrays, name: changed})
-            with pytest.raises(OutputError, match="isn't a complete evaluation .*; evaluate again"):
+            with pytest.raises(OutputError, match="expected a result of this version"):
                 read_evaluation(plain_result)
         del arrays[name]
         np.savez(target, **arrays)
-        with pytest.raises(OutputError, match="isn't a complete evaluation .*; evaluate again"):
+        with pytest.raises(OutputError, match="expected a result of this version"):
             read_evaluation(plain_result)
     finally:
         target.write_bytes(content)

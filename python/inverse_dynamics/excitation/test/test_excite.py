@@ -50,7 +50,7 @@ def test_writes_a_motion_and_the_message_to_send(ids, arm, tmp_path):
     rows = re.findall("N m .*", printed)
     shares = [int(share) for row in rows for share in row.split()[4:7]]
     assert 70 < max(shares) <= 80  # of the limits, of which --share leaves as much
-    assert "written        motion.yaml, motion_joint_trajectory.yaml" in printed
+    assert "written        motion.yaml, motion.npz, motion_joint_trajectory.yaml" in printed
     motion, source = read_trajectory(tmp_path / "motion.yaml", ("shoulder", "lift", "fold"))
     assert "made by ids excite" in source
     message = yaml.safe_load((tmp_path / "motion_joint_trajectory.yaml").read_text())
@@ -58,6 +58,7 @@ def test_writes_a_motion_and_the_message_to_send(ids, arm, tmp_path):
     assert set(message) == {"header", "joint_names", "points"}
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "arm.urdf",
+        "motion.npz",
         "motion.yaml",
         "motion_joint_trajectory.yaml",
     ]

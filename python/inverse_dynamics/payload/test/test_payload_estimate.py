@@ -160,7 +160,7 @@ def test_the_verb_writes_yaml_json_and_figure(ids, recording):
     again = ("payload", recording, "--robot", "panda_simulated", "--out", "payload.yaml")
     code, out, err = ids(*again, "--no-figures", "--json")
     assert (code, err) == (0, "ids: replacing the earlier result in payload.yaml ...\n")
-    written = ["payload.yaml", "payload.json", "payload.html"]
+    written = ["payload.yaml", "payload.npz", "payload.json", "payload.html"]
     document = {"schema": 3, "verb": "payload", "written": written, "result": figures}
     assert json.loads(out) == document
     Path("payload.json").unlink()  # what is left may be the user's own

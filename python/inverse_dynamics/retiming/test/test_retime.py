@@ -545,6 +545,7 @@ def test_command_writes_a_trajectory_that_ids_torques_confirms(tmp_path, capsys)
         "metadata.yaml",
         "report.html",
         "retime.json",
+        "series.npz",
         "torques.png",
         "trajectory.csv",
     }

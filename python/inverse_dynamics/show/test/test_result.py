@@ -8,14 +8,12 @@ import pickle
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.show.result import (
     PAGE,
-    SERIES,
     Result,
     ResultDirectory,
     ResultFiles,
@@ -50,10 +48,7 @@ class Sum(Result):
 
 
 class SumDirectory(Sum, ResultDirectory):
-    contents = files_of("sum.json", "sum", SERIES, PAGE)
-
-    def arrays(self):
-        return {"values": np.array(self.values)}
+    contents = files_of("sum.json", "sum", PAGE)
 
 
 class SumFiles(Sum, ResultFiles):
@@ -69,7 +64,7 @@ def test_a_directory_holds_numbers_samples_page_and_figures(tmp_path):
     names = ["report.html", "series.npz", "sum.json", "sum.png", "sum.svg"]
     assert sorted(os.listdir(tmp_path / "sum")) == names
     assert json.loads((tmp_path / "sum/sum.json").read_text())["sum"] == 3.0
-    assert np.load(tmp_path / "sum/series.npz")["values"].tolist() == [1.0, 2.0]
+    assert SumDirectory.load(tmp_path / "sum") == SumDirectory()
     with pytest.raises(OutputError, match="exists already"):
         SumDirectory().save(tmp_path / "sum")
     SumDirectory((4.0,)).save(str(tmp_path / "sum"), overwrite=True, figures=())
@@ -83,7 +78,8 @@ def test_files_lie_beside_each_other(tmp_path):
     assert {file.name for file in SumFiles.files(out, ("png",))} | {"b.txt"} == {
         *os.listdir(tmp_path)
     }
-    assert [f.name for f in SumFiles.files(out)] == ["a.yml", "a_more.yml", "a.json"]
+    assert [f.name for f in SumFiles.files(out)] == ["a.yml", "a.npz", "a_more.yml", "a.json"]
+    assert SumFiles.load(out) == SumFiles()
     assert out.read_text() == "more: a_more.yml\n"
     with pytest.raises(OutputError, match="exists already"):
         SumFiles().save(out)
