@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics import _core
+from inverse_dynamics._core import Solver
 from inverse_dynamics.arguments import checked
-from inverse_dynamics.errors import BagError
+from inverse_dynamics.errors import BagError, SolverError
 from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run, torques_with_gravity
 from inverse_dynamics.evaluation.posture import LOCKED, locked_joints, posture_of, still_joints
 from inverse_dynamics.evaluation.ranges import on_one_turn
@@ -62,13 +63,14 @@ from inverse_dynamics.recordings.sketch import sketch_of
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.dh_tables import guess_of
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot, robot_of
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from typing_extensions import Unpack
 
-    from inverse_dynamics._core import ArmFitter, DescribedJoint, FastModel, Solver
+    from inverse_dynamics._core import ArmFitter, DescribedJoint, FastModel
     from inverse_dynamics.arrays import Floats, Parameter
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.identification.drive_gains import KnownPayload
@@ -143,6 +145,8 @@ def identify(
     >>> found.solver().joint_names[2]
     'elbow_joint'
     """
+    if isinstance(robot, Solver):
+        _check_unloaded(robot)
     if robot is None:
         robot = replace(robot_of(None, options.get("urdf")), effort="torque", friction=False)
     robot, stated = overridden(robot, options), of_recording(options)
@@ -252,6 +256,17 @@ def _description(robot: Robot) -> str:
             "give --urdf"
         )
     return read_description(robot.urdf)
+
+
+def _check_unloaded(solver: Solver) -> None:
+    """What a solver carries isn't in its description, from which the model starts."""
+    with suppress(SolverError):  # of one that can't carry any
+        if carried := [*solver.payloads]:
+            raise IdentificationError(
+                f"robot: expected a Solver that carries nothing, as the model starts from the description, got one "
+                f"with {listed(carried)}; fix the body to the last link of the description, or take it off: "
+                "clear_payloads()"
+            )
 
 
 def _check_given(recordings: Sequence[Recorded], others: Sequence[Recorded]) -> None:

@@ -12,6 +12,7 @@ keys and wrong types are errors with file, line and key.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from inverse_dynamics._core import Robot as Robot
@@ -20,16 +21,17 @@ from inverse_dynamics._core import load_robot as load_robot
 from inverse_dynamics._core import robot_names as robot_names
 from inverse_dynamics._core import robot_of_description as robot_of_description
 from inverse_dynamics._core import with_changes as with_changes
-from inverse_dynamics.errors import RobotError
+from inverse_dynamics.errors import RobotError, SolverError
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+_GRAVITY = (0.0, 0.0, -9.81)  # m/s^2, where nothing is stated
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 
 
 def robot_of(given: Robot | Solver | Path | str | None, urdf: Path | str | None = None) -> Robot:
-    """The run configuration of a name, a file, a Solver; of a description alone where none is given.
+    """The run configuration of a name, a file, a Solver (with its gravity); of a description alone where none is given.
 
     Raises RobotError.
     """
@@ -40,5 +42,10 @@ def robot_of(given: Robot | Solver | Path | str | None, urdf: Path | str | None 
             )
         return robot_of_description(urdf)
     if isinstance(given, Solver):
-        return given.robot
+        robot = given.robot
+        with suppress(SolverError):  # of a solver whose gravity can't change
+            gravity = tuple(given.gravity.tolist())
+            if gravity != (robot.gravity or _GRAVITY):  # set since
+                return with_changes(robot, gravity=gravity)
+        return robot
     return given if isinstance(given, Robot) else load_robot(given)

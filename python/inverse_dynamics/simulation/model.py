@@ -46,10 +46,14 @@ _NEAR = 1e-7  # rad/s; slopes between closer velocities are rounding
 
 @dataclass(frozen=True)
 class Payload:
-    """A point mass fixed to the tip: kg; center of mass in the tip's frame, m."""
+    """A body fixed to the tip: kg; center of mass in the tip's frame, m.
+
+    inertia: ixx ixy ixz iyy iyz izz, kg m^2 about the center of mass, along the axes of the tip's frame.
+    """
 
     mass: float
     center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    inertia: tuple[float, ...] = (0.0,) * 6
 
 
 @dataclass(frozen=True)
@@ -238,9 +242,11 @@ def _loaded(chain: UrdfChain, payload: Payload) -> UrdfChain:
             f"{payload.mass:g} kg at {', '.join(f'{x:g}' for x in payload.center)}"
         )
     place = " ".join(repr(float(number)) for number in payload.center)
+    names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    moments = " ".join(f'{k}="{float(v)!r}"' for k, v in zip(names, payload.inertia, strict=True))
     load = (
         f'<link name="ids_payload"><inertial><origin xyz="{place}"/><mass value="{float(payload.mass)!r}"/>'
-        '<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>'
+        f"<inertia {moments}/></inertial></link>"
         f'<joint name="ids_payload" type="fixed"><parent link={quoteattr(chain.tip)}/>'
         '<child link="ids_payload"/></joint>'
     )

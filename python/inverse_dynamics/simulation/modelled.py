@@ -16,6 +16,7 @@ import numpy as np
 
 from inverse_dynamics._core import FastModel, RobotDescription, Solver
 from inverse_dynamics.decimals import decimal
+from inverse_dynamics.evaluation.posture import locked_joints
 from inverse_dynamics.robots.descriptions import parse_description, read_description
 from inverse_dynamics.robots.link_parameters import inertial_elements, pseudo_inertia, turned
 from inverse_dynamics.robots.solvers import open_solver
@@ -25,16 +26,17 @@ from inverse_dynamics.simulation.model import (
     GRAVITY,
     Friction,
     JointFriction,
+    Payload,
     SimulatedRobot,
 )
-from inverse_dynamics.simulation.urdf import chain_from_urdf
+from inverse_dynamics.simulation.urdf import chain_from_urdf, with_held_joints
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.robots.robots import Robot
-    from inverse_dynamics.simulation.model import Gravity, Payload
+    from inverse_dynamics.simulation.model import Gravity
     from inverse_dynamics.simulation.urdf import UrdfChain
 
 _STATES = 20  # in which simulator and solver are compared
@@ -76,10 +78,30 @@ def description_of(robot: Robot) -> str:
     return read_description(robot.urdf)
 
 
+def carried_by(solver: Solver) -> Payload | None:
+    """All payloads of a solver as one body."""
+    bodies = solver.payloads.values()
+    mass = sum(body["mass"] for body in bodies)
+    if not mass:
+        return None
+    poses = [body["frame"] for body in bodies]
+    centers = [
+        (pose @ [*body["center_of_mass"], 1.0])[:3]
+        for body, pose in zip(bodies, poses, strict=True)
+    ]
+    center = sum(body["mass"] * c for body, c in zip(bodies, centers, strict=True)) / mass
+    inertia = np.zeros((3, 3))
+    for body, pose, place in zip(bodies, poses, centers, strict=True):
+        R, d = pose[:3, :3], place - center
+        inertia += R @ body["inertia"] @ R.T + body["mass"] * (d @ d * np.eye(3) - np.outer(d, d))
+    return Payload(mass, tuple(center.tolist()), tuple(inertia[np.triu_indices(3)].tolist()))
+
+
 class PlantOptions(TypedDict, total=False):
     """What is simulated, beyond the robot's run configuration.
 
-    gravity: m/s^2, in the frame of the root link; None: the run configuration's. payload: at the tip.
+    gravity: m/s^2, in the frame of the root link; None: the run configuration's. payload: at the tip; None: those of
+    a Solver that is given as robot.
     joint_friction: the friction itself; a number: Coulomb friction that part of each joint's effort limit, and as much
     viscous friction at its velocity limit; "urdf": what <dynamics> says; "model": that of the run configuration's
     solver; None: none, or the model's with `from_model`. from_model: links and rotor inertias are those of the run
@@ -103,14 +125,15 @@ def simulated_robot(
     payload, joint_friction = plant.get("payload"), plant.get("joint_friction")
     from_model = plant.get("from_model", False)
     try:
-        chain = chain_from_urdf(description, robot.root, robot.tip)
+        held = with_held_joints(description, locked_joints(robot))
+        chain = chain_from_urdf(held, robot.root, robot.tip)
         solver = None
         if from_model or joint_friction == "model":
             solver = _model_solver(robot, description, gravity, payload)
         friction = _friction(robot, chain, solver, joint_friction)
-        urdf, rotor_inertia = description, None
+        urdf, rotor_inertia = held, None
         if from_model:
-            urdf, rotor_inertia = modelled_description(robot, chain, description)
+            urdf, rotor_inertia = modelled_description(robot, chain, held)
         simulated = SimulatedRobot.from_urdf(
             urdf,
             robot.root,
@@ -137,7 +160,8 @@ def _model_solver(
     solver = open_solver(replace(robot, friction=True), description)
     solver.set_gravity(gravity)
     if payload is not None:
-        solver.set_payload("simulated payload", payload.mass, payload.center)
+        solver.clear_payloads()
+        solver.set_payload("simulated payload", payload.mass, payload.center, payload.inertia)
     return solver
 
 

@@ -17,13 +17,17 @@ beside its messages; rosbag2 and its tools read only what metadata.yaml names:
 from __future__ import annotations
 
 import hashlib
+from contextlib import suppress
 from dataclasses import dataclass, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from inverse_dynamics._core import Solver
 from inverse_dynamics.arguments import checked
+from inverse_dynamics.errors import SolverError
+from inverse_dynamics.evaluation.posture import LOCKED
 from inverse_dynamics.installation.extras import lazily_imported
 from inverse_dynamics.outputs.files import Contents, move_up, write_text, written_whole
 from inverse_dynamics.progress import no_progress
@@ -39,6 +43,7 @@ from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.modelled import (
     ModelFriction,
     PlantOptions,
+    carried_by,
     description_of,
     simulated_robot,
 )
@@ -62,7 +67,6 @@ if TYPE_CHECKING:
     import mujoco
     from typing_extensions import Unpack
 
-    from inverse_dynamics._core import Solver
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Storage
@@ -191,11 +195,14 @@ def simulate(
     >>> evaluate(run.log, "ur10_simulated").mean_rmse < 0.1  # N m
     True
     """
-    robot = robot_of(robot)
-    description = description_of(robot)
     plant = cast(
         "PlantOptions", {k: v for k, v in options.items() if k in PlantOptions.__annotations__}
     )
+    if isinstance(robot, Solver) and plant.get("payload") is None:
+        with suppress(SolverError):  # of one that can't carry any
+            plant["payload"] = carried_by(robot)
+    robot = robot_of(robot)
+    description = description_of(robot)
     simulated = simulated_robot(robot, description, **plant)
     seed, table = options.get("seed", 0), options.get("table", True)
     chain = simulated.chain
@@ -239,7 +246,7 @@ def simulate(
         "duration": float(duration),
         "seed": seed,
         "trajectory": source,
-        "payload": _plain(options.get("payload")),
+        "payload": _plain(plant.get("payload")),
         "links": links.name if links else None,
         "joint_friction": _friction_settings(robot, simulated.friction),
         **_plain(sensors),
@@ -292,10 +299,8 @@ def _begun_by_seed(trajectory: Trajectory, source: str, seed: int) -> tuple[Traj
 def _unused(robot: Robot) -> list[str]:
     """Notes on settings of the run configuration that the simulation doesn't use."""
     notes = []
-    if robot.parameters:
-        notes.append(
-            f"parameters of the solver aren't used by the simulation: {listed([*robot.parameters])}"
-        )
+    if unused := [name for name in robot.parameters if not name.startswith(LOCKED)]:
+        notes.append(f"parameters of the solver aren't used by the simulation: {listed(unused)}")
     if robot.effort not in ("torque", "auto"):
         notes.append(
             f"efforts are recorded as torques, though the run configuration says {robot.effort}: "

@@ -20,8 +20,11 @@ from inverse_dynamics._core import FastModel, RobotDescription
 from inverse_dynamics.errors import RobotError, SolverError
 from inverse_dynamics.robots.descriptions import parse_description
 from inverse_dynamics.simulation.errors import SimulationError
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from inverse_dynamics.arrays import Floats
 
 
@@ -84,6 +87,46 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
         notes=_prepare_for_mujoco(robot, names),
         urdf=ElementTree.tostring(robot, encoding="unicode"),
     )
+
+
+def with_held_joints(text: str, positions: Mapping[str, float]) -> str:
+    """The description with joints fixed at positions [rad, m]. Raises SimulationError."""
+    if not positions:
+        return text
+    try:
+        robot, described = parse_description(text), RobotDescription(text).joints
+    except RobotError as error:
+        raise SimulationError(f"robot description: {error}") from error
+    of_name = {joint.name: joint for joint in described}
+    if unknown := [name for name in positions if name not in of_name]:
+        raise SimulationError(
+            f"robot description: locked_joints: expected joints of the description, got {listed(unknown)}"
+        )
+    for element in robot.findall("joint"):
+        name = element.get("name", "")
+        if name not in positions:
+            continue
+        joint, q = of_name[name], positions[name]
+        R, p, cross = joint.pose[:3, :3], joint.pose[:3, 3], np.cross(np.eye(3), joint.axis)
+        if joint.type == "prismatic":
+            p = p + R @ joint.axis * q
+        else:  # Rodrigues
+            R = R @ (np.eye(3) + np.sin(q) * cross + (1 - np.cos(q)) * cross @ cross)
+        origin = element.find("origin")
+        origin = ElementTree.SubElement(element, "origin") if origin is None else origin
+        origin.set("xyz", " ".join(map(repr, p.tolist())))
+        origin.set("rpy", " ".join(map(repr, _roll_pitch_yaw(R))))
+        element.set("type", "fixed")
+    return ElementTree.tostring(robot, encoding="unicode")
+
+
+def _roll_pitch_yaw(R: Floats) -> list[float]:
+    """Angles about fixed axes; yaw first, so that they fit together where pitch is a right angle."""
+    yaw = np.arctan2(R[1, 0], R[0, 0])
+    c, s = np.cos(yaw), np.sin(yaw)
+    pitch = np.arctan2(-R[2, 0], c * R[0, 0] + s * R[1, 0])
+    roll = np.arctan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
+    return [float(roll), float(pitch), float(yaw)]
 
 
 def _prepare_for_mujoco(robot: ElementTree.Element, chain: tuple[str, ...]) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.payload.payload import PayloadError, estimate_payload
 from inverse_dynamics.recordings.joint_log import JointLog
 from inverse_dynamics.robots.arm import Arm
-from inverse_dynamics.robots.robots import robot_of_description
+from inverse_dynamics.robots.robots import robot_of, robot_of_description
 
 ROBOT = "ur10_simulated"
 RATE = 250  # Hz, of motion()
@@ -73,6 +73,17 @@ def test_efforts_that_nothing_measured(log, tmp_path):
     text = str(reason([evaluated(tmp_path, replace(log, effort=effort))]))
     assert "elbow_joint: expected efforts that change, got the same in all samples" in text
     assert "record another topic, or end the chain before it" in text
+
+
+def test_a_solver_that_carries_something(log):
+    solver = Solver(ROBOT)
+    solver.set_payload("gripper", 1.0)
+    with pytest.raises(
+        IdentificationError, match="a Solver that carries nothing, .* got one with gripper"
+    ):
+        identify(log, solver)
+    solver.set_gravity([0.0, 0.0, 9.81])
+    assert robot_of(solver).gravity == (0.0, 0.0, 9.81)
 
 
 @pytest.mark.parametrize("still", [[0], [2], [3, 5]])

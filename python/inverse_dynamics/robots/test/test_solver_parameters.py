@@ -10,6 +10,7 @@ import subprocess
 import sys
 import textwrap
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,12 @@ from example_robots import RIGID_BODY
 from simulation_arms import joint, link, pendulum, robot, two_links, write_robot
 
 from inverse_dynamics import Solver, load_robot, read_evaluation
-from inverse_dynamics.errors import ArgumentError, InvalidParameterError, ParameterMissingError
+from inverse_dynamics.errors import (
+    ArgumentError,
+    InvalidParameterError,
+    ParameterMissingError,
+    UserError,
+)
 from inverse_dynamics.simulation import simulate
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -134,14 +140,18 @@ def test_a_parameter_that_the_solver_does_not_know_is_told_with_the_robot(ids, t
 
 def test_simulation_says_that_it_does_not_use_them(tmp_path):
     arm = load_robot(
-        write_robot(tmp_path, two_links(), "tip: tip\nparameters: {locked_joints: {a: 1}}\n")
+        write_robot(tmp_path, two_links(), "tip: tip\nparameters: {batch_threads: 1}\n")
     )
     from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
     names = ("shoulder", "lift", "fold")
     still = WaypointTrajectory.through(names, np.array([0.0, 1.0]), np.zeros((2, 3)) + 0.5)
     notes = simulate(arm, trajectory=still, rate=125, duration=0.1).notes
-    assert "parameters of the solver aren't used by the simulation: locked_joints.a" in notes
+    assert "parameters of the solver aren't used by the simulation: batch_threads" in notes
+    with pytest.raises(
+        UserError, match=r"locked_joints: expected joints of the description, got a$"
+    ):
+        simulate(replace(arm, parameters={"locked_joints.a": 1.0}), duration=0.1)
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ import pytest
 import yaml
 from example_robots import RIGID_BODY
 from identified_arms import arm, identification
-from simulation_arms import pendulum, robots_package, write_robot
+from simulation_arms import joint, link, pendulum, robot, robots_package, write_robot
 
 from inverse_dynamics import Solver, load_robot
 from inverse_dynamics.identification.files import write_identification
@@ -19,7 +19,7 @@ from inverse_dynamics.robots.robots import Robot
 from inverse_dynamics.robots.solvers import open_solver
 from inverse_dynamics.simulation import Payload, SimulationError, simulate
 from inverse_dynamics.simulation.modelled import ModelFriction
-from inverse_dynamics.simulation.trajectory import read_trajectory
+from inverse_dynamics.simulation.trajectory import WaypointTrajectory, read_trajectory
 
 LOAD = Payload(4.0, (0.02, 0.0, 0.1))
 # of the torques, up to 300 N m: moments about principal axes are rounded
@@ -55,6 +55,37 @@ def test_effort_is_what_the_model_computes(identified: Robot, payload: Payload |
     friction = solver.friction_vector(motion.qd, q=motion.q)
     np.testing.assert_allclose(motion.friction, friction, atol=300 * ROUNDING)
     assert np.abs(motion.q - motion.q_desired).max() < 5e-3
+
+
+def test_what_a_solver_carries_and_its_gravity_are_simulated() -> None:
+    solver = Solver("ur10_simulated")
+    turn = np.array([[0, 0, 1, 0.1], [1, 0, 0, 0], [0, 1, 0, 0.05], [0, 0, 0, 1.0]])
+    body = {"center_of_mass": [0.02, 0.0, 0.1], "inertia": [0.05, 0.01, 0.0, 0.04, 0.0, 0.03]}
+    solver.set_payload("tool", 2.0, **body)
+    solver.set_payload("part", 3.0, **body, frame=turn)
+    solver.set_gravity([0.0, 6.0, -7.0])
+    motion = motion_of(solver)
+    computed = solver.torques(motion.q, motion.qd, motion.qdd)
+    np.testing.assert_allclose(motion.effort, computed, rtol=ROUNDING, atol=300 * ROUNDING)
+
+
+@pytest.mark.parametrize("kind", ["revolute", "prismatic"])
+def test_held_joints_are_simulated_where_they_are(tmp_path: Path, kind: str) -> None:
+    upright = "0.4 1.5707963267948966 0.2"  # where angles aren't unique
+    urdf = robot(
+        *(link("base"), link("arm", 2.0, "0.2 0 0"), link("upper", 1.5, "0 0.1 0.3")),
+        link("hand", 1.0, "0.3 0 0"),
+        joint("swing", "base", "arm"),
+        joint("bend", "arm", "upper", kind, "0.1 0.2 0.3", "1 2 -0.5", rpy=upright),
+        joint("turn", "upper", "hand", xyz="0 0 0.4"),
+    )
+    held = load_robot(write_robot(tmp_path, urdf, "parameters: {locked_joints: {bend: 0.3}}\n"))
+    ways = np.array([[0.0, 0.0], [0.5, -0.5], [0.0, 0.0]])
+    motion = WaypointTrajectory.through(("swing", "turn"), np.arange(3.0), ways)
+    followed = simulate(held, trajectory=motion, rate=500, table=False).motion
+    computed = Solver(held).torques(followed.q, followed.qd, followed.qdd)
+    np.testing.assert_allclose(followed.effort, computed, rtol=ROUNDING, atol=1e-6)
+    assert np.abs(computed).max() > 10.0
 
 
 def test_links_of_the_description_may_have_the_friction_of_any_solver() -> None:

@@ -74,7 +74,7 @@ def test_all_options_arrive(made):
         "duration": 0.5,
         "seed": 4,
         "storage": "mcap",
-        "payload": {"mass": 0.5, "center": [0.1, 0.0, 0.2]},
+        "payload": {"mass": 0.5, "center": [0.1, 0.0, 0.2], "inertia": [0.0] * 6},
         "gravity": [-1, 0, -9],
         "noise": {"position": 1e-4, "velocity": 1e-3, "effort": 0.2},
         "quantisation": {"position": 1e-5, "velocity": 1e-4, "effort": 0.1},
@@ -113,7 +113,7 @@ def test_options_without_a_value_have_stated_defaults(made):
     assert settings["quantisation"] == {"position": 1e-5, "velocity": 1e-3, "effort": 0.01}
     assert settings["joint_friction"]["coulomb"] == [2.0]
     assert settings["gravity"] == [0, 0, 9.81]
-    assert settings["payload"] == {"mass": 1.0, "center": [0.0, 0.0, 0.0]}
+    assert settings["payload"] == {"mass": 1.0, "center": [0.0, 0.0, 0.0], "inertia": [0.0] * 6}
 
 
 @pytest.mark.parametrize(
