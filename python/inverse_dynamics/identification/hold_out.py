@@ -59,12 +59,6 @@ def hold_out(
 
     options: those of evaluate(). Raises UserError.
     """
-    used = [path.resolve() for path in found.recordings]
-    if isinstance(recording, Path | str) and Path(recording).resolve() in used:
-        raise IdentificationError(
-            f"--hold-out {recording}: expected a recording that nothing was fitted to, got one of those "
-            "that were; give another"
-        )
     robot, gains = found.robot, found.model.drive_gains
     if gains is not None:
         robot = replace(robot, drive_gains=tuple(gains.tolist()))
@@ -75,6 +69,11 @@ def hold_out(
         model_errors_file(model).write_text(uncertainty_text(found, text), encoding="utf-8")
         identified = replace(robot, plugin=RIGID_BODY, model=model, friction=True, parameters={})
         result = evaluate(recording, identified, progress=progress, **options)
+    if result.fitted:
+        raise IdentificationError(
+            f"--hold-out {result.bag}: expected a recording that nothing was fitted to, got samples of those "
+            "that were; give another"
+        )
     measured = torques_with_gravity(result)
     kept = result.samples.kept
     solvers = baselines(robot, read_description(urdf_of(found)))

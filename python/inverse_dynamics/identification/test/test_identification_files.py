@@ -289,9 +289,13 @@ def test_a_recording_that_was_held_out_has_the_refitted_present_model_too(found,
     assert (test.rmse["present_refitted"] > test.rmse["identified"]).all()
 
 
-def test_a_recording_that_was_fitted_to_is_not_held_out(found):
-    with pytest.raises(IdentificationError, match="nothing was fitted to"):
-        hold_out(found, found.recordings[0])
+def test_samples_that_were_fitted_to_are_not_held_out(found, tuesday, tmp_path):
+    log = read_joint_log(tuesday)
+    fitted = replace(found, sketch=sketch_of(log))
+    tuesday.rename(tmp_path / "copy")
+    for recording in (tmp_path / "copy", log):
+        with pytest.raises(IdentificationError, match="nothing was fitted to"):
+            hold_out(fitted, recording)
 
 
 def test_a_backward_stamp_is_no_obstacle(found):
