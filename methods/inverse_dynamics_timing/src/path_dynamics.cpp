@@ -42,6 +42,26 @@ VectorXd capOfTip(const InverseDynamicsSolver& solver, const MatrixXd& q, const 
   throw ids::InvalidParameterValueException("retime(): " + where, "", expected, got);
 }
 
+/// What a joint's torque may be at a velocity.
+double torqueLimit(const MotionLimits& limits, const VectorXd& band, Index j, double velocity) {
+  if (limits.knee_velocity.size() == 0) return limits.torque[j] - band[j];
+  const double knee = limits.knee_velocity[j], none = limits.no_load_velocity[j];
+  const double share = std::min((none - std::abs(velocity)) / (none - knee), 1.0);
+  return limits.torque[j] * share - band[j];
+}
+
+/// Shares of an interval at which excess() looks, with q' at its ends.
+template <class Column>
+const std::vector<double>& between(const Column& here, const Column& next, bool rests) {
+  static const std::vector<double> kMiddle{0.5}, kBent{0.25, 0.5, 0.75},
+      kStepped{1.0 / 64, 1.0 / 16, 0.25, 0.5, 0.75, 15.0 / 16, 63.0 / 64};
+  if (rests || (here.array().abs().min(next.array().abs()) < (next - here).array().abs()).any()) {
+    return kStepped;
+  }
+  constexpr double kBend = 0.03;  // of q', relative
+  return (next - here).squaredNorm() >= kBend * kBend * here.squaredNorm() ? kBent : kMiddle;
+}
+
 }  // namespace
 
 inline namespace v2 {
@@ -103,14 +123,6 @@ PathDynamics::PathDynamics(const InverseDynamicsSolver& solver, const Path& path
   limit_by(limits.no_load_velocity);
 }
 
-double PathDynamics::torqueLimit(Index j, double velocity) const {
-  const double limit = limits_.torque[j] - band_[j];
-  if (limits_.knee_velocity.size() == 0) return limit;
-  const double knee = limits_.knee_velocity[j], none = limits_.no_load_velocity[j];
-  const double share = std::min((none - std::abs(velocity)) / (none - knee), 1.0);
-  return limits_.torque[j] * share - band_[j];
-}
-
 Room PathDynamics::emptyRoom() const {
   const VectorXd zero = VectorXd::Zero(rows());
   return {-1, 0.0, zero, zero, zero, zero};
@@ -129,8 +141,8 @@ void PathDynamics::room(Index k, double z, Room& room) const {
     solver_.getFrictionVector(q_.col(k), qd.col(i), f.col(i));
   }
   for (Index j = 0; j < n; ++j) {
-    const double limit = torqueLimit(j, qd(j, 0));
-    const double slope = step > 0 ? (torqueLimit(j, qd(j, 1)) - limit) / step : 0.0;
+    const double limit = torqueLimit(limits_, band_, j, qd(j, 0));
+    const double slope = step > 0 ? (torqueLimit(limits_, band_, j, qd(j, 1)) - limit) / step : 0.0;
     const double friction_slope = step > 0 ? (f(j, 1) - f(j, 0)) / step : 0.0;
     room.up_slope[j] = slope - friction_slope;
     room.down_slope[j] = slope + friction_slope;
@@ -143,73 +155,73 @@ void PathDynamics::room(Index k, double z, Room& room) const {
   }
 }
 
-const std::vector<double>& PathDynamics::between(Index k, bool rests) const {
-  static const std::vector<double> kMiddle{0.5}, kBent{0.25, 0.5, 0.75},
-      kStepped{1.0 / 64, 1.0 / 16, 0.25, 0.5, 0.75, 15.0 / 16, 63.0 / 64};
-  const auto here = dq_.col(k).array(), next = dq_.col(k + 1).array();
-  if (rests || (here.abs().min(next.abs()) < (next - here).abs()).any()) return kStepped;
-  constexpr double kBend = 0.03;  // of q', relative
-  const bool bends = (next - here).square().sum() >= kBend * kBend * here.square().sum();
-  return bends ? kBent : kMiddle;
+Index PathDynamics::weakest(Index k, double& missing) const {
+  Index joint = -1;
+  double worst = 0.0;
+  for (Index j = 0; j < g_.rows(); ++j) {
+    const double limit = torqueLimit(limits_, band_, j, 0.0);
+    const double lacks = std::abs(g_(j, k) + at_rest_(j, k)) - limit;
+    if (lacks > worst * limits_.torque[j])
+      worst = lacks / limits_.torque[j], joint = j, missing = lacks;
+  }
+  return joint;
 }
 
-VectorXd PathDynamics::excess(const Eigen::Ref<const VectorXd>& z, bool at_ends) const {
+VectorXd excess(const InverseDynamicsSolver& solver, const Path& path,
+                const Eigen::Ref<const VectorXd>& s, const Eigen::Ref<const VectorXd>& z,
+                const MotionLimits& limits, double margin, bool at_ends) {
   struct Place {
     Index k;
     double share;
   };
   std::vector<Place> places;
-  places.reserve(static_cast<std::size_t>(4 * points()));
-  for (Index k = 0; k + 1 < points(); ++k) {
-    for (const double share : between(k, z[k] == 0.0 || z[k + 1] == 0.0)) {
+  const Index n = path.jointCount(), points = s.size();
+  places.reserve(static_cast<std::size_t>(4 * points));
+  MatrixXd ends(n, 2);
+  VectorXd position(n), bend(n);
+  path.evaluate(s[0], position, ends.col(0), bend);
+  for (Index k = 0; k + 1 < points; ++k) {
+    const auto here = ends.col(k % 2);
+    auto next = ends.col((k + 1) % 2);
+    path.evaluate(s[k + 1], position, next, bend, k + 2 == points);
+    for (const double share : between(here, next, z[k] == 0.0 || z[k + 1] == 0.0)) {
       places.push_back({k, share});
     }
     if (at_ends) places.push_back({k, 0.0}), places.push_back({k, 1.0});
   }
-  const Index n = g_.rows(), count = static_cast<Index>(places.size());
+  const auto count = static_cast<Index>(places.size());
   MatrixXd q(n, count), qd(n, count), qdd(n, count), tau(n, count);
   for (Index i = 0; i < count; ++i) {
     const auto [k, share] = places[static_cast<std::size_t>(i)];
-    const double length = s_[k + 1] - s_[k], here = z[k] + share * (z[k + 1] - z[k]);
-    path_.evaluate(s_[k] + share * length, q.col(i), qd.col(i), qdd.col(i), share == 1.0);
+    const double length = s[k + 1] - s[k], here = z[k] + share * (z[k + 1] - z[k]);
+    path.evaluate(s[k] + share * length, q.col(i), qd.col(i), qdd.col(i), share == 1.0);
     qdd.col(i) = (z[k + 1] - z[k]) / (2 * length) * qd.col(i) + here * qdd.col(i);
     qd.col(i) *= std::sqrt(here);
   }
-  solver_.getTorquesBatch(q, qd, qdd, tau);
+  solver.getTorquesBatch(q, qd, qdd, tau);
   const auto* tip =
-      std::isfinite(limits_.tip_speed) ? dynamic_cast<const ids::Kinematics*>(&solver_) : nullptr;
+      std::isfinite(limits.tip_speed) ? dynamic_cast<const ids::Kinematics*>(&solver) : nullptr;
   MatrixXd J(6, n);
-  VectorXd most = VectorXd::Zero(points() - 1);
+  const VectorXd band = torqueBand(solver, margin);
+  VectorXd most = VectorXd::Zero(points - 1);
   for (Index i = 0; i < count; ++i) {
     double& worst = most[places[static_cast<std::size_t>(i)].k];
     const auto look = [&worst](const auto& values, const chain_dynamics::OwnedVector& limit) {
       if (limit.size() == 0) return;
       worst = std::max(worst, (values.array().abs() / limit.array()).maxCoeff() - 1.0);
     };
-    look(qd.col(i), limits_.velocity);
-    look(qdd.col(i), limits_.acceleration);
+    look(qd.col(i), limits.velocity);
+    look(qdd.col(i), limits.acceleration);
     if (tip != nullptr) {
       tip->getTipJacobian(q.col(i), J);
-      worst = std::max(worst, (J.topRows(3) * qd.col(i)).norm() / limits_.tip_speed - 1.0);
+      worst = std::max(worst, (J.topRows(3) * qd.col(i)).norm() / limits.tip_speed - 1.0);
     }
     for (Index j = 0; j < n; ++j) {
-      const double limit = torqueLimit(j, qd(j, i));
-      worst = std::max(worst, (std::abs(tau(j, i)) - limit) / limits_.torque[j]);
+      const double limit = torqueLimit(limits, band, j, qd(j, i));
+      worst = std::max(worst, (std::abs(tau(j, i)) - limit) / limits.torque[j]);
     }
   }
   return most;
-}
-
-Index PathDynamics::weakest(Index k, double& missing) const {
-  Index joint = -1;
-  double worst = 0.0;
-  for (Index j = 0; j < g_.rows(); ++j) {
-    const double limit = torqueLimit(j, 0.0);
-    const double lacks = std::abs(g_(j, k) + at_rest_(j, k)) - limit;
-    if (lacks > worst * limits_.torque[j])
-      worst = lacks / limits_.torque[j], joint = j, missing = lacks;
-  }
-  return joint;
 }
 
 namespace {

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
-#include <vector>
 
 #include "inverse_dynamics_timing/retime.hpp"
 
@@ -40,21 +39,10 @@ class PathDynamics {
   void room(Eigen::Index k, double z, Room& room) const;
   Room emptyRoom() const;
 
-  /// Greatest excess over a limit within each interval, as a share of it, with squared speeds z at the
-  /// points: in its middle; at three places where the path bends; at seven, towards the ends, where a joint
-  /// turns back or the robot starts or stops, and friction steps.
-  ///
-  /// @param at_ends  look at the ends too: of a motion that wasn't found on this grid.
-  Eigen::VectorXd excess(const Eigen::Ref<const Eigen::VectorXd>& z, bool at_ends = false) const;
-
   /// The joint that lacks most torque to stand still at point k, and how much; -1: none lacks any.
   Eigen::Index weakest(Eigen::Index k, double& missing) const;
 
  private:
-  /// Shares of interval k at which excess() looks.
-  const std::vector<double>& between(Eigen::Index k, bool rests) const;
-  double torqueLimit(Eigen::Index j, double velocity) const;
-
   const InverseDynamicsSolver& solver_;
   const Path& path_;
   const MotionLimits& limits_;
@@ -63,6 +51,17 @@ class PathDynamics {
   Eigen::MatrixXd a_, b_, g_;
   Eigen::MatrixXd at_rest_;  // friction, n x N
 };
+
+/// Greatest excess over a limit within each interval between the points s, as a share of it, with squared
+/// speeds z at the points: in its middle; at three places where the path bends; at seven, towards the
+/// ends, where a joint turns back or the robot starts or stops, and friction steps.
+///
+/// @param s        as of PathDynamics.
+/// @param at_ends  look at the ends too: of a motion that wasn't found on this grid.
+Eigen::VectorXd excess(const InverseDynamicsSolver& solver, const Path& path,
+                       const Eigen::Ref<const Eigen::VectorXd>& s,
+                       const Eigen::Ref<const Eigen::VectorXd>& z, const MotionLimits& limits,
+                       double margin, bool at_ends = false);
 
 /// Throws unless limits and options can be used [retime.hpp].
 void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,

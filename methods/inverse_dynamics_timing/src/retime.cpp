@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -94,6 +95,7 @@ std::vector<Index> borders(const Path& path) {
   return result;
 }
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAllowed = 1e-3;   // above a limit between points, share of it
 constexpr double kLongest = 600.0;  // s, of motions with limits of jerk or torque rate
 constexpr int kRefinements = 10;
@@ -118,24 +120,30 @@ VectorXd refined(const VectorXd& grid, const VectorXd& excess) {
 /// Where along a motion a limit is passed furthest, and by which share of it.
 double overload(const InverseDynamicsSolver& solver, const Trajectory& motion,
                 const MotionLimits& limits, double margin, double& s) {
+  constexpr Index kAtOnce = 500;  // points, which fit into a cache
   double worst = 0.0;
   const VectorXd grid = motion.s(), z = motion.speed().array().square();
   Index first = 0, at = 0;
   for (Index k = 1; k <= grid.size(); ++k) {
-    if (k < grid.size() && grid[k] > grid[k - 1]) continue;
-    const PathDynamics dynamics(solver, motion.path(), grid.segment(first, k - first), limits,
-                                margin);
-    const double over = dynamics.excess(z.segment(first, k - first), true).maxCoeff(&at);
-    if (over > worst) worst = over, s = dynamics.s(at);
+    const bool stops = k == grid.size() || grid[k] == grid[k - 1];
+    if (!stops && k - first < kAtOnce) continue;
+    const Index count = k - first + (stops ? 0 : 1);
+    if (count > 1) {
+      const double over = excess(solver, motion.path(), grid.segment(first, count),
+                                 z.segment(first, count), limits, margin, true)
+                              .maxCoeff(&at);
+      if (over > worst) worst = over, s = grid[first + at];
+    }
     first = k;
   }
   return worst;
 }
 
-/// The motion with its changes in limits, and then as slow as torques demand.
+/// The motion with its changes in limits, and then as slow as torques demand; refused unless it takes less
+/// than `most`, s.
 Retimed withoutJumps(const InverseDynamicsSolver& solver, const Trajectory& motion,
-                     const MotionLimits& limits, const VectorXd& jerk, double margin) {
-  constexpr double kSlower = 1.01, kSlowest = 4.0;
+                     const MotionLimits& limits, const VectorXd& jerk, double margin, double most) {
+  constexpr double kSlower = 1.01, kLeastStep = 1.001, kSlowest = 4.0;
   const auto too_slow = [](const Trajectory& slow) {
     return Retimed{{}, {Refusal::Reason::kTooSlow, 0.0, -1, slow.duration()}};
   };
@@ -147,10 +155,17 @@ Retimed withoutJumps(const InverseDynamicsSolver& solver, const Trajectory& moti
     const double rate = fastest.share * limits.torque_rate[fastest.joint];
     return {{}, {Refusal::Reason::kRateTooLow, fastest.s, fastest.joint, rate}};
   }
-  double s = 0.0;
-  for (double factor = 1.0; factor < kSlowest; factor *= kSlower) {
+  double s = 0.0, factor = 1.0, last = 0.0, last_over = 0.0;
+  while (factor < kSlowest && factor * smooth.duration() < most) {
     Trajectory slower = slowed(smooth, factor);
-    if (overload(solver, slower, limits, margin, s) <= kAllowed) return {std::move(slower), {}};
+    const double over = overload(solver, slower, limits, margin, s);
+    if (over <= kAllowed) return {std::move(slower), {}};
+    // The excess falls ever more slowly with the factor, so its secant doesn't lead too far.
+    double next = factor * (last == 0.0 ? kSlower : kLeastStep);
+    if (over < last_over) {
+      next = std::max(next, factor + (over - kAllowed / 2) * (factor - last) / (last_over - over));
+    }
+    last = factor, last_over = over, factor = next;
   }
   return {{}, {Refusal::Reason::kNoWayOn, s, -1, 0.0}};
 }
@@ -188,7 +203,7 @@ Retimed withJumps(const InverseDynamicsSolver& solver, const Path& path, const M
       PhasePlane plane(dynamics);
       if (plane.solve(start * start, end * end)) {
         z = plane.z();
-        finer = refined(grid, dynamics.excess(z));
+        finer = refined(grid, excess(solver, path, grid, z, limits, options.margin));
         if (finer.size() == 0 || finer.size() > most || round == kRefinements) break;
       } else {
         // Intervals that are too coarse may leave no way where finer ones do.
@@ -214,6 +229,7 @@ Retimed fastestWithoutJumps(const InverseDynamicsSolver& solver, const Trajector
                             const MotionLimits& limits, const RetimeOptions& options) {
   constexpr double kWorse = 2.0, kSame = 1.001, kLeastStep = 1.1;
   constexpr int kHalvings = 30;
+  if (fastestChange(solver, fastest, limits).share <= 1.0) return {fastest, {}};
   const VectorXd jerk = typicalJerk(solver, fastest.path(), limits);
   Retimed best{{}, {Refusal::Reason::kNoWayOn, 0.0, -1, 0.0}};
   // About 2.5 times the best time of a motion that is all acceleration, or one that limits nothing.
@@ -227,20 +243,26 @@ Retimed fastestWithoutJumps(const InverseDynamicsSolver& solver, const Trajector
       softer.acceleration = softer.acceleration.cwiseMin(limits.acceleration).eval();
     }
     Retimed motion = withJumps(solver, fastest.path(), softer, options);
-    if (motion) motion = withoutJumps(solver, motion.trajectory, limits, jerk, options.margin);
+    const double most = best ? kSame * best.trajectory.duration() : kInfinity;
+    if (motion && motion.trajectory.duration() >= most) return kWorse;  // as with less time
+    if (motion) {
+      motion = withoutJumps(solver, motion.trajectory, limits, jerk, options.margin, most);
+    }
     if (motion.refusal.reason >= Refusal::Reason::kTooSlow) {  // slower ones are refused as well
       if (!best) best = std::move(motion);
       return kWorse;
     }
-    const double share =
-        motion && best ? motion.trajectory.duration() / best.trajectory.duration() : 1.0;
-    if (!best || share < kSame)
-      best_time = reached;  // also where times that are longer limit nothing
+    if (best && !motion) return kSame;
+    const double share = best ? motion.trajectory.duration() / best.trajectory.duration() : 1.0;
+    best_time = reached;  // also where times that are longer limit nothing
     if (!best || share < 1.0) best = std::move(motion);
     return share;
   };
-  for (int halving = 0; halving < kHalvings && attempt(time) < kWorse; ++halving) time /= 2;
-  for (double step = std::sqrt(2.0); step > kLeastStep; step = std::sqrt(step)) {
+  const auto shortest = [&] { return best && best.trajectory.duration() < kSame * duration; };
+  for (int halving = 0; halving < kHalvings && attempt(time) < kWorse && !shortest(); ++halving) {
+    time /= 2;
+  }
+  for (double step = std::sqrt(2.0); step > kLeastStep && !shortest(); step = std::sqrt(step)) {
     const double middle = best_time;
     attempt(middle * step), attempt(middle / step);
   }

@@ -45,7 +45,7 @@ double positionAt(const Trajectory& motion, const Section& section, double t) {
 }
 
 constexpr double kStep = 1e-3;  // s, of smoothed motions
-constexpr Index kParts = 8;     // of an interval near a knot
+constexpr Index kShares = 8;    // of an interval near a knot
 
 /// The motion with its speed averaged over a span of time; stops stay stops.
 Trajectory averaged(const Trajectory& motion, double span) {
@@ -82,17 +82,17 @@ Trajectory averaged(const Trajectory& motion, double span) {
 struct States {
   std::vector<Index> intervals;  // those that take time
   std::vector<Index> first;      // of each: the number of its first state
-  std::vector<bool> divided;     // of each: whether it has kParts + 1 states, and not two
+  std::vector<bool> divided;     // of each: whether it has kShares + 1 states, and not two
   MatrixXd q, qd, qdd;
 
   explicit States(const Trajectory& motion);
 
-  /// The number of the state at a part, 0 to kParts, of interval i; of -1 and of the last: at rest.
+  /// The number of the state at a part, 0 to kShares, of interval i; of -1 and of the last: at rest.
   Index at(Index i, Index part) const {
     if (i < 0) return 0;
     if (i == static_cast<Index>(intervals.size())) return q.cols() - 1;
     const auto here = static_cast<std::size_t>(i);
-    return first[here] + (divided[here] ? part : part / kParts);
+    return first[here] + (divided[here] ? part : part / kShares);
   }
 };
 
@@ -110,7 +110,7 @@ States::States(const Trajectory& motion) {
     const std::size_t last = std::min(i + 1, intervals.size() - 1);
     for (std::size_t near = i == 0 ? 0 : i - 1; near <= last; ++near) divided[near] = true;
   }
-  for (const bool more : divided) first.push_back(count), count += more ? kParts + 1 : 2;
+  for (const bool more : divided) first.push_back(count), count += more ? kShares + 1 : 2;
 
   const Index n = motion.path().jointCount();
   q.resize(n, count + 1), qd.resize(n, count + 1), qdd.resize(n, count + 1);
@@ -120,7 +120,7 @@ States::States(const Trajectory& motion) {
     qd.col(rest).setZero(), qdd.col(rest).setZero();
   }
   for (std::size_t i = 0; i < intervals.size(); ++i) {
-    const Index k = intervals[i], parts = divided[i] ? kParts : 1;
+    const Index k = intervals[i], parts = divided[i] ? kShares : 1;
     const double u = (speed[k + 1] - speed[k]) / (time[k + 1] - time[k]);
     for (Index part = 0; part <= parts; ++part) {
       const Index to = first[i] + part;
@@ -135,7 +135,8 @@ States::States(const Trajectory& motion) {
   }
 }
 
-/// Of an averaged motion, whose intervals are of kStep or little more.
+}  // namespace
+
 Change fastestChange(const InverseDynamicsSolver& solver, const Trajectory& motion,
                      const MotionLimits& limits) {
   const States states(motion);
@@ -156,9 +157,11 @@ Change fastestChange(const InverseDynamicsSolver& solver, const Trajectory& moti
   };
   for (Index i = 0; i <= count; ++i) {
     const Index k = states.intervals[static_cast<std::size_t>(std::min(i, count - 1))];
-    const double per_second = 1 / std::min(motion.time()[k + 1] - motion.time()[k], kStep);
-    const Index step = divided(i - 1) && divided(i) ? 1 : kParts;
-    for (Index part = 0; part <= kParts; part += step) {
+    const Index l = states.intervals[static_cast<std::size_t>(std::max(i - 1, Index{0}))];
+    const auto& time = motion.time();
+    const double per_second = 1 / std::min({time[k + 1] - time[k], time[l + 1] - time[l], kStep});
+    const Index step = divided(i - 1) && divided(i) ? 1 : kShares;
+    for (Index part = 0; part <= kShares; part += step) {
       const auto before = values.col(states.at(i - 1, part)), here = values.col(states.at(i, part));
       Index row = 0;
       const double share = (here - before).cwiseAbs().maxCoeff(&row) * per_second;
@@ -167,8 +170,6 @@ Change fastestChange(const InverseDynamicsSolver& solver, const Trajectory& moti
   }
   return fastest;
 }
-
-}  // namespace
 
 double accelerationTime(const Trajectory& motion, const VectorXd& jerk) {
   const States states(motion);

@@ -30,6 +30,11 @@ Trajectory smoothed(const inverse_dynamics_solver::InverseDynamicsSolver& solver
                     const Trajectory& motion, const MotionLimits& limits,
                     const Eigen::VectorXd& jerk, double longest, Change& fastest);
 
+/// The fastest change of a motion; of one whose intervals differ in length, or are of more than 1 ms, at
+/// most that much.
+Change fastestChange(const inverse_dynamics_solver::InverseDynamicsSolver& solver,
+                     const Trajectory& motion, const MotionLimits& limits);
+
 /// The time in which the joints reach the motion's greatest accelerations with these jerks, s.
 double accelerationTime(const Trajectory& motion, const Eigen::VectorXd& jerk);
 

@@ -455,11 +455,21 @@ TEST(Retime, MotionsWithJerkLimitsThatTakeTooLongAreRefused) {
   const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
   MotionLimits limits;
   limits.torque = VectorXd::Constant(1, 10.0);
-  limits.jerk = VectorXd::Constant(1, 10.0);
-  limits.velocity = VectorXd::Constant(1, 1e-5);
+  limits.jerk = VectorXd::Constant(1, 0.1);
+  limits.velocity = VectorXd::Constant(1, 1e-3);
   const Retimed slow = retime(*solver, path, limits);
   EXPECT_EQ(slow.refusal.reason, Refusal::Reason::kTooSlow);
-  EXPECT_THAT(text(slow.refusal, solver->jointNames()), HasSubstr("takes at least 2e+05 s"));
+  EXPECT_THAT(text(slow.refusal, solver->jointNames()), HasSubstr("takes at least 2000 s"));
+}
+
+TEST(Retime, MotionsThatKeepJerkAndTorqueRateAnywayAreTheFastestOnes) {
+  const auto solver = identified("ur10_identified.yaml");
+  MotionLimits limits;
+  limits.torque = ur10Torques();
+  const Path path = Path::spline(randomWaypoints(6, 3));
+  const double fastest = retime(*solver, path, limits).trajectory.duration();
+  limits.jerk = VectorXd::Constant(6, 1e8), limits.torque_rate = VectorXd::Constant(6, 1e9);
+  EXPECT_EQ(retime(*solver, path, limits).trajectory.duration(), fastest);
 }
 
 // The shortest time of a way d is (32 d / j)^(1/3).
