@@ -126,18 +126,18 @@ const char* typeOf(const DescribedJoint& joint) {
   return kNames[static_cast<std::size_t>(joint.type)];
 }
 
-/// What is stated; a limit of zero isn't, nor is a range from 0 to 0.
+/// What is stated.
 std::map<std::string, double> limitsOf(const DescribedJoint& joint) {
   const auto& limits = joint.limits;
   std::map<std::string, double> stated;
-  if ((limits.lower != 0 || limits.upper != 0) && std::isfinite(limits.upper - limits.lower)) {
+  if (std::isfinite(limits.upper - limits.lower)) {
     stated = {{"lower", limits.lower}, {"upper", limits.upper}};
   }
   for (const auto& [name, value] :
        {std::pair("velocity", limits.velocity), std::pair("effort", limits.effort),
         std::pair("acceleration", limits.acceleration),
         std::pair("deceleration", limits.deceleration), std::pair("jerk", limits.jerk)}) {
-    if (value > 0 && std::isfinite(value)) stated.emplace(name, value);
+    if (std::isfinite(value)) stated.emplace(name, value);
   }
   return stated;
 }

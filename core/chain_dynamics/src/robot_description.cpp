@@ -157,12 +157,14 @@ void readAxis(const UrdfElement& element, RobotDescription::Joint& joint) {
   }
 }
 
-// A limit; none where it is below zero: some exporters write -1.
+// A limit; none where it is 0, as exporters write of what isn't known, or below: some write -1.
 double greatest(const UrdfElement& limit, const char* key) {
   const double value = limit.number(key);
-  if (value >= 0) return value;
-  limit.warn("<limit> " + std::string(key) + ": " + limit.text(key) +
-             " is taken as no limit; state the limit, or 0 where it is unknown");
+  if (value > 0) return value;
+  if (value != 0) {
+    limit.warn("<limit> " + std::string(key) + ": " + limit.text(key) +
+               " is taken as no limit; state the limit, or 0 where it is unknown");
+  }
   return std::numeric_limits<double>::infinity();
 }
 
@@ -182,7 +184,8 @@ void readLimits(const UrdfElement& element, RobotDescription::Joint& joint) {
   }
   const double lower = limit->number("lower", 0);
   const double upper = limit->number("upper", 0);
-  if (joint.type != Type::kContinuous) {
+  const bool stated = lower != 0 || upper != 0;
+  if (joint.type != Type::kContinuous && stated) {
     joint.limits.lower = lower;
     joint.limits.upper = upper;
   }

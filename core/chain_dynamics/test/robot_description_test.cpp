@@ -404,6 +404,20 @@ TEST(RobotDescription, LimitsOfMinusOneAreNoLimits) {
   EXPECT_THAT(warnings(of("5")), IsEmpty());
 }
 
+TEST(RobotDescription, LimitsOfZeroAreNotStated) {
+  const std::string urdf =
+      replaced(hinge(inertial(),
+                     "<limit lower='0' upper='0' velocity='0' effort='0' acceleration='0' "
+                     "deceleration='0' jerk='0'/>"),
+               "<robot", "<robot version='1.2'");
+  EXPECT_THAT(warnings(urdf), IsEmpty());
+  const JointLimits limits = chainFromUrdf(urdf).joints()[0].limits;
+  for (const double limit : {-limits.lower, limits.upper, limits.velocity, limits.effort,
+                             limits.acceleration, limits.deceleration, limits.jerk}) {
+    EXPECT_EQ(limit, std::numeric_limits<double>::infinity());
+  }
+}
+
 TEST(RobotDescription, RepeatedAttributesAreAnError) {
   EXPECT_THAT(urdfError(replaced(hinge(inertial()), "mass value='2'", "mass value='2' value='3'")),
               HasSubstr("URDF:4: robot description: expected well-formed XML"));

@@ -7,7 +7,6 @@
 #include <chain_dynamics/text.hpp>
 #include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -25,9 +24,6 @@ RobotDescription described(const std::string& urdf) {
         std::string("robot description: ") + error.what());
   }
 }
-
-// Zero stands for what isn't known.
-double stated(double limit) { return limit > 0 ? limit : std::numeric_limits<double>::infinity(); }
 
 }  // namespace
 
@@ -62,9 +58,9 @@ DescribedLimits describedLimits(const std::string& robot_description,
     }
     const chain_dynamics::JointLimits& limits = robot.joints[joint].limits;
     found.effort[j] = limits.effort;
-    found.jerk[j] = stated(limits.jerk);
-    found.reference.acceleration[j] = stated(limits.acceleration);
-    found.reference.deceleration[j] = stated(limits.deceleration);
+    found.jerk[j] = limits.jerk;
+    found.reference.acceleration[j] = limits.acceleration;
+    found.reference.deceleration[j] = limits.deceleration;
     found.reference.velocity[j] = limits.velocity;
     found.reference.lower[j] = limits.lower;
     found.reference.upper[j] = limits.upper;

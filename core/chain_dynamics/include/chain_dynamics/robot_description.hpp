@@ -82,7 +82,7 @@ struct RobotDescription {
     /// Of any length but 0, in the frame of the child link. A fixed joint's isn't read, nor are its
     /// limits, mimic and dynamics.
     Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-    JointLimits limits = {};  ///< a continuous joint has no lower and upper
+    JointLimits limits = {};  ///< 0 in a URDF: none; a continuous joint has no range
     double damping = 0;       ///< N m s/rad; prismatic N s/m. 0: not stated.
     double friction = 0;      ///< N m; prismatic N. 0: not stated.
     /// Reflected to the joint: `<motorInertia>` times the square of `<mechanicalReduction>`, or
