@@ -60,6 +60,7 @@ class Draft:
     description: str  # that evaluate() is given
     gravity: Floats = field(default_factory=lambda: GRAVITY)
     payload: tuple[float, Sequence[float]] | None = None
+    stated: tuple[float, Sequence[float]] | None = None  # payload of the run configuration
     weightless: bool = False
     friction: Callable[[Draft, Floats, Random], Floats] | None = None
 
@@ -95,7 +96,8 @@ class Recording:
             return path, self.robot
         path.with_suffix(".urdf").write_text(d.description, encoding="utf-8")
         robot = robot_of_description(path.with_suffix(".urdf"))
-        return path, replace(robot, root=d.arm.root, tip=d.arm.tip)
+        load = dict(zip(("payload.mass", "payload.center_of_mass"), d.stated or (), strict=False))
+        return path, replace(robot, root=d.arm.root, tip=d.arm.tip, parameters=load)
 
 
 def motion(arm: Arm, random: Random, fast: bool) -> tuple[Floats, Floats, Floats, Floats]:
@@ -210,6 +212,13 @@ def payload(d: Draft, r: Random) -> Mistake:
 def tool(d: Draft, r: Random) -> Mistake:
     """Beside the axis of the last joint."""
     return _held(d, r, tuple(r.uniform(-0.15, 0.15, 3)))
+
+
+def not_carried(d: Draft, r: Random) -> Mistake:
+    """The run configuration states a payload that the arm has put down."""
+    found = _held(d, r, (0.0, 0.0, float(r.uniform(0, 0.15))))
+    d.stated, d.payload = d.payload, None
+    return found
 
 
 def mass(d: Draft, r: Random) -> Mistake:
@@ -500,7 +509,7 @@ def misfit(d: Draft) -> float:
     """Greatest error beside friction and offset, as a share of a joint's range, of joints that tell something."""
     step = max(1, len(d.q) // 600)
     q, qd, qdd, effort = (x[::step] for x in (d.q, d.qd, d.qdd, d.effort))
-    computed = Arm(d.description, d.arm.root, d.arm.tip).torques(q, qd, qdd)
+    computed = Arm(d.description, d.arm.root, d.arm.tip).torques(q, qd, qdd, payload=d.stated)
     shares = []
     for j in d.informative:
         columns = np.column_stack([qd[:, j], np.tanh(qd[:, j] / 0.05), np.ones(len(q))])
@@ -526,6 +535,7 @@ def recordings(
     pairs = [*product((tilt,), with_any), *product((payload, mass), (*with_load, *with_any))]
     # a quarter without a mistake
     kinds = [*singles, *pairs[seed % 2 :: 2], *[()] * ((len(singles) + len(pairs) // 2) // 3)]
+    kinds.append((not_carried,))
     for number, makers in enumerate(kinds):
         random = np.random.default_rng([seed, number])
         for k in range(each):

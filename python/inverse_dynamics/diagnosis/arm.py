@@ -48,6 +48,7 @@ class ArmModel:
     gravity_direction: Floats | None = None  # (3,) m/s^2
     pulled: Callable[[Floats], Floats] | None = None
     loaded: Compute | None = None
+    carried: float = 0.0  # kg of the payloads that the solver has
     links: Compute | None = None
     link_names: tuple[str, ...] = ()
     mass: float = 0.0  # kg of the links; 0: it isn't known
@@ -112,8 +113,8 @@ def arm_model(arm: Arm, *, without_gravity: bool = False) -> ArmModel:
     with suppress(SolverError):  # solvers needn't be able to
         model = replace(model, gravity_direction=solver.gravity, pulled=pulled)
     with suppress(SolverError):
-        _ = solver.payloads
-        model = replace(model, loaded=loaded)
+        carried = sum(body["mass"] for body in solver.payloads.values())
+        model = replace(model, loaded=loaded, carried=carried)
     with suppress(SolverError, RobotError):
         if description:
             model = _with_description(model, robot, solver, description)

@@ -17,6 +17,7 @@ from inverse_dynamics.diagnosis.rival import Mistake, Rival, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
+    from inverse_dynamics.diagnosis.arm import ArmModel
     from inverse_dynamics.diagnosis.pieces import View
 
 _LENGTH = (8.0, 12.0)  # m/s^2 of gravity, with masses that are wrong by a fifth
@@ -55,8 +56,8 @@ def mounts_and_loads(view: View) -> Iterator[Rival]:
         yield view.rival("gravity", words, columns=columns, includes=includes)
     parts = view.loaded
     if parts is not None:
-        low = (0.0, -np.inf, -np.inf, -np.inf)
-        words = partial(_load, parts, arm.mass)
+        low = (-arm.carried, -np.inf, -np.inf, -np.inf)
+        words = partial(_load, parts, arm)
         yield view.rival("payload", words, columns=tuple(parts), low=low)
 
 
@@ -118,11 +119,11 @@ def _subtracted(own: Floats, left: Floats, _: Floats) -> Mistake | None:
     )
 
 
-def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Mistake | None:
-    least, most = (share * arm for share in _MASS)
-    if body[0] <= least or (arm and body[0] > most):
+def _load(parts: Floats, arm: ArmModel, body: Floats, _: Floats) -> Mistake | None:
+    least, most = (share * arm.mass for share in _MASS)
+    if abs(body[0]) <= least or (arm.mass and body[0] > most):
         return None
-    if np.linalg.norm(body[1:]) > _REACH * body[0]:
+    if np.linalg.norm(body[1:]) > _REACH * abs(body[0]):
         return None
     mass = printed(body[0])
     center = np.round(body[1:] / body[0], 3) + 0.0
@@ -130,6 +131,16 @@ def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Mistake | None:
     load = np.tensordot(rounded, parts, axes=1)
     beside = float(np.abs(load[:, -1]).max()) > _BESIDE * float(np.abs(load).max())
     where = ",".join(f"{x:g}" for x in center)
+    if mass < 0:
+        return Mistake(
+            "payload",
+            "A payload",
+            f"torques match if the tip carries about {-mass:.2g} kg less, at {where} m, than the {arm.carried:.2g} kg "
+            "of the payload that is stated",
+            "correct the payload that is stated, or leave it out",
+            value=[mass, *map(float, center)],
+            shared=rounded,
+        )
     return Mistake(
         "tool" if beside else "payload",
         "A tool the description lacks, and the tip" if beside else "A payload",

@@ -60,11 +60,11 @@ def motion_of(joints: int, duration: float = 20.0, rate: float = 200.0):
     return time, q + np.linspace(-1.0, 1.0, joints), qd, qdd
 
 
-def model_of(name: str, **options):
-    """The arm by its description, as `ids evaluate` has it."""
+def model_of(name: str, load: dict[str, object] | None = None, **options):
+    """The arm by its description, as `ids evaluate` has it. load: parameters of a payload."""
     root, tip = CHAINS[name]
     file = robots_package() / "urdf" / f"{name}.urdf"
-    robot = replace(robot_of_description(file), root=root, tip=tip)
+    robot = replace(robot_of_description(file), root=root, tip=tip, parameters=load or {})
     return arm_model(Arm(robot), **options)
 
 
@@ -358,6 +358,19 @@ def test_a_load_is_found(arm, center, kind):
     )
     assert cause.kind == kind
     np.testing.assert_allclose(cause.value, [mass, *center], rtol=0.05, atol=0.02)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4])
+def test_a_load_that_is_stated_but_not_carried_is_found(arm, share):
+    name, *_ = arm
+    mass, center = 8.0 if name == "ur10" else 3.0, [0.0, 0.02, 0.1]
+    model = model_of(name, {"payload.mass": mass, "payload.center_of_mass": center})
+    carried = torques_of(name, load=(share * mass, *center))
+    cause = only(compare(recorded(name, carried, friction=0.01), model))
+    assert cause.kind == "payload"
+    np.testing.assert_allclose(cause.value, [(share - 1) * mass, *center], rtol=0.05, atol=0.02)
+    assert f"kg less, at {cause.value[1]:g}," in cause.reason
+    assert f"than the {mass:g} kg of the payload that is stated" in cause.reason
 
 
 @pytest.mark.parametrize("factor", [0.1, 10.0])
