@@ -212,7 +212,7 @@ def _half_widths(fitter: ArmFitter, fit: ArmFit, currents: ArmData) -> Floats:
         known = Knowledge(
             fitter.joint_names, values, fitter.prior, data, share * prior, scores, assumed=none
         )
-        deviations.append(np.sqrt(np.diag(known.covariance)[at]))
+        deviations.append(np.linalg.norm(known.deviations[at], axis=1))
     widths: Floats = student_t(len(scores)) * np.max(deviations, axis=0)
     return widths
 

@@ -73,8 +73,8 @@ class Knowledge:
     assumed: Floats
 
     @property
-    def covariance(self) -> Floats:
-        """(m, m): cluster-robust, and what the prior may be wrong by.
+    def deviations(self) -> Floats:
+        """(m, K), of the covariance `deviations deviations'`: cluster-robust, and what the prior may be wrong by.
 
         A fit is drawn to the prior by as much as the prior is wrong. How wrong that is, in units of
         its strength, the links tell that the data have moved.
@@ -82,10 +82,9 @@ class Knowledge:
         bread = _inverse(self.data + self.prior)
         centered = self.scores - self.scores.mean(0)
         clusters = len(centered)
-        meat = centered.T @ centered * (clusters / (clusters - 1))
-        covariance: Floats = bread @ (meat + self._prior_error() * self.prior) @ bread
-        covariance += self.assumed @ self.assumed.T
-        return covariance
+        of_blocks = centered.T * np.sqrt(clusters / (clusters - 1))
+        of_prior = _root(self.prior) * np.sqrt(self._prior_error())
+        return np.hstack([bread @ of_blocks, bread @ of_prior, self.assumed])
 
     def _prior_error(self) -> float:
         """Mean square of the prior's errors in the directions that the data determine, at least one."""
@@ -115,6 +114,15 @@ def _inverse(matrix: Floats) -> Floats:
     """Of a positive definite matrix whose unknowns have different units."""
     scale = 1 / np.sqrt(np.diag(matrix))
     return np.linalg.inv(matrix * np.outer(scale, scale)) * np.outer(scale, scale)
+
+
+def _root(matrix: Floats) -> Floats:
+    """R of a positive semidefinite matrix R R' whose unknowns have different units."""
+    scale = np.sqrt(np.diag(matrix))
+    scale[scale == 0] = 1
+    values, vectors = np.linalg.eigh(matrix / np.outer(scale, scale))
+    root: Floats = scale[:, None] * vectors * np.sqrt(np.maximum(values, 0))
+    return root
 
 
 def knowledge(
@@ -204,15 +212,15 @@ def intervals(known: Knowledge, model: FastModel, units: Sequence[str]) -> tuple
     units: of each joint's torque, N m or N.
     """
     n = len(known.joints)
-    covariance = known.covariance
+    deviations = known.deviations
     factor = student_t(len(known.scores))
     found = []
     for combination, k, name in _combinations(model, known.joints):
         direction = np.zeros(len(known.values))
         direction[: 10 * n] = combination
-        half = factor * float(np.sqrt(direction @ covariance @ direction))
+        half = factor * float(np.linalg.norm(direction @ deviations))
         found.append(Interval(name, UNITS[k % 10], float(direction @ known.values), half, ""))
-    half_widths: list[float] = (factor * np.sqrt(np.diag(covariance))).tolist()
+    half_widths: list[float] = (factor * np.linalg.norm(deviations, axis=1)).tolist()
     columns = (len(known.values) - 10 * n) // n
     for j, joint in enumerate(known.joints):
         for c, (key, logarithm) in enumerate(_OWN[:columns]):

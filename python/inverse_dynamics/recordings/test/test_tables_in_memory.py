@@ -82,6 +82,7 @@ def test_every_source_gives_the_same_evaluation(source, arrays):
     np.testing.assert_allclose(result.measured, expected.measured, atol=ROUNDING)
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
 @pytest.mark.parametrize("source", SOURCES)
 def test_every_feature_takes_them(source, arrays, tmp_path):
     table = SOURCES[source](arrays)
@@ -90,6 +91,7 @@ def test_every_feature_takes_them(source, arrays, tmp_path):
     assert find_contacts(table, ROBOT, quiet=(0.0, 5.0)).contacts == ()
     model = identify(table, ROBOT, accept=["no_friction"])
     assert model.held_out["identified"].mean() < model.held_out["urdf"].mean()
+    assert all(np.isfinite(interval.half_width) for interval in model.intervals)
     model.save(tmp_path / "arm.yaml")
     assert evaluate(table, tmp_path / "arm.yaml").mean_rmse < 1.0
 
