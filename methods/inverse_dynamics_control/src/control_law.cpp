@@ -24,9 +24,7 @@ ControlLaw::ControlLaw(std::shared_ptr<const InverseDynamicsSolver> solver,
 }
 
 Status ControlLaw::hold(const JointState& state, double period, VectorRef tau) noexcept {
-  const Status status = check(state, tau);
-  const Status limited = refuse(status, state, period, tau);
-  return status == Status::kOk ? limited : status;
+  return refuse(check(state, tau), state, period, tau);
 }
 
 const OwnedVector& ControlLaw::positionError(const ConstVectorRef& q_ref,
@@ -78,18 +76,22 @@ Status ControlLaw::refuse(Status why, const JointState& state, double period,
     return why;
   }
   // g(q) - damping qd, of what is known
-  if (state.q.size() == n && state.q.allFinite()) updateGravity(state.q);
+  const bool positioned = state.q.size() == n && state.q.allFinite();
+  if (positioned && !updateGravity(state.q) && why == Status::kOk) why = Status::kSolverFailed;
   desired_ = gravity_;
   if (state.qd.size() == n && state.qd.allFinite()) desired_ -= damping_.cwiseProduct(state.qd);
   const Status limited = output_.apply(desired_, period, tau);
   return why == Status::kOk ? limited : why;
 }
 
-void ControlLaw::updateGravity(const ConstVectorRef& q) noexcept {
+bool ControlLaw::updateGravity(const ConstVectorRef& q) noexcept {
   try {
     model_.gravity(q, gravity_candidate_);
-    if (gravity_candidate_.allFinite()) gravity_ = gravity_candidate_;
+    if (!gravity_candidate_.allFinite()) return false;
+    gravity_ = gravity_candidate_;
+    return true;
   } catch (...) {  // a solver that fails: gravity stays what it was
+    return false;
   }
 }
 

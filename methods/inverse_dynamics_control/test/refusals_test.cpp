@@ -182,6 +182,11 @@ TEST(Refusals, HoldIsTheSafeTorqueOnDemand) {
   EXPECT_EQ(law.hold(stateOf(vec({0.7}), vec({-50.0})), kPeriod, tau), Status::kSaturated);
   EXPECT_EQ(law.hold(stateOf(vec({kNan}), vec({0.0})), kPeriod, tau), Status::kStateNotFinite);
   EXPECT_NEAR(tau[0], gravityAt(0.7), kRounding);
+  for (const Pendulum::Fault fault : {Pendulum::Fault::kThrows, Pendulum::Fault::kGivesNan}) {
+    laws.solver->fault = fault;
+    EXPECT_EQ(law.hold(stateOf(vec({0.2}), vec({0.0})), kPeriod, tau), Status::kSolverFailed);
+    EXPECT_NEAR(tau[0], gravityAt(0.7), kRounding);
+  }
 }
 
 TEST(Refusals, ALawGoesOnWhenItsInputsAreGoodAgain) {

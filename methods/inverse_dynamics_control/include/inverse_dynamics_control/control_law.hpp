@@ -68,7 +68,8 @@ class ControlLaw {
   ///
   /// @param period    s since the last call of hold() or update(), for the rate limit.
   /// @param[out] tau  n; N m (prismatic N).
-  /// @return kOk, kSaturated, kRateLimited, kNoPeriod, kStateNotFinite or kWrongSize.
+  /// @return kOk, kSaturated, kRateLimited, kNoPeriod, kStateNotFinite, kSolverFailed (gravity is
+  ///         that of the last cycle) or kWrongSize.
   Status hold(const JointState& state, double period, VectorRef tau) noexcept;
 
   /// Other damping from the next call of hold() or update() on; for the thread that calls them. The
@@ -135,7 +136,8 @@ class ControlLaw {
   const OwnedVector& damping() const noexcept { return damping_; }
 
  private:
-  void updateGravity(const ConstVectorRef& q) noexcept;
+  // Whether the solver gave a finite one.
+  bool updateGravity(const ConstVectorRef& q) noexcept;
 
   ModelTerms model_;
   FrictionCompensation friction_;
