@@ -244,7 +244,7 @@ TEST(UsersProgram, KeepsStopsAndGuardsOnItsStack) {
   ReferenceLimits limits = ReferenceLimits::none(6);
   limits.velocity = VectorXd::Constant(6, 1.0);
   ReferenceGuard guard(limits, VectorXd::Constant(6, 2.0), names);
-  guard.start(kQ);
+  guard.start(reference.q);
   Reference copy = guard.next(reference, 1e-3);
   EXPECT_EQ(copy.q, reference.q);
   copy.qd = VectorXd::Constant(6, 9.0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/reference_guard.hpp"
 
+#include <algorithm>
 #include <chain_dynamics/chain.hpp>
 #include <cmath>
 #include <cstddef>
@@ -26,6 +27,34 @@ struct Fault {
   StopReason reason = StopReason::kNone;
   Eigen::Index joint = -1;
 };
+
+// Beyond this times a limit, and beyond the measured state, a reference steps.
+constexpr double kJitter = 2.0;
+
+bool steps(double change, double measured, double reach) noexcept {
+  const double nearer = std::isfinite(measured) ? measured : 0.0;
+  return change < std::min(0.0, nearer) - reach || change > std::max(0.0, nearer) + reach;
+}
+
+// The first joint that is too far from `last` after so many seconds.
+Fault stepOf(const Reference& desired, const Reference& last, const JointState& measured,
+             const ReferenceLimits& limits, const std::vector<chain_dynamics::JointType>& types,
+             double interval) noexcept {
+  for (Eigen::Index j = 0; j < last.q.size(); ++j) {
+    const auto type = types[static_cast<std::size_t>(j)];
+    const auto change = [&](double q) {
+      return chain_dynamics::unwrapped(type, q, last.q[j]) - last.q[j];
+    };
+    const double fastest = std::max(limits.acceleration[j], limits.deceleration[j]);
+    if (steps(change(desired.q[j]), change(measured.q[j]),
+              kJitter * limits.velocity[j] * interval + kRounding) ||
+        steps(desired.qd[j] - last.qd[j], measured.qd[j] - last.qd[j],
+              kJitter * fastest * interval + kRounding)) {
+      return {StopReason::kStep, j};
+    }
+  }
+  return {};
+}
 
 Fault faultOf(const Reference& desired, const ReferenceLimits& limits,
               const std::vector<chain_dynamics::JointType>& types) noexcept {
@@ -73,6 +102,8 @@ const char* text(StopReason reason) noexcept {
       return "the reference's velocity lies beyond its limit";
     case StopReason::kAcceleration:
       return "the reference's acceleration lies beyond its limit";
+    case StopReason::kStep:
+      return "the reference steps farther than the limits of velocity and acceleration allow";
     case StopReason::kStale:
       return "no new reference came while the last one still moves";
     case StopReason::kWrongSize:
@@ -84,11 +115,16 @@ const char* text(StopReason reason) noexcept {
 ReferenceGuard::ReferenceGuard(ReferenceLimits limits,
                                const Eigen::Ref<const Eigen::VectorXd>& deceleration,
                                const std::vector<std::string>& joint_names,
-                               std::vector<chain_dynamics::JointType> joint_types)
+                               std::vector<chain_dynamics::JointType> joint_types, Steps steps)
     : limits_(std::move(limits)),
       types_(std::move(joint_types)),
       safe_stop_(deceleration, joint_names),
-      followed_(deceleration.size()) {
+      steps_(steps),
+      slope_(deceleration),
+      followed_(deceleration.size()),
+      unknown_(deceleration.size()) {
+  unknown_.q.setConstant(std::numeric_limits<double>::quiet_NaN());
+  unknown_.qd = unknown_.q;
   const std::string where = "reference guard: ";
   requireJointNumbers(where + "velocity limit", limits_.velocity, Range::kPositiveOrAbsent, "rad/s",
                       joint_names);
@@ -111,22 +147,52 @@ void ReferenceGuard::start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept 
   followed_.q = q;
   followed_.qd.setZero();
   followed_.qdd.setZero();
+  moving_ = ramping_ = false;
   reason_ = StopReason::kNone;
   joint_ = -1;
 }
 
-const Reference& ReferenceGuard::next(const Reference& desired, double period) noexcept {
-  if (!stopped()) {
-    const Fault fault = faultOf(desired, limits_, types_);
-    if (fault.reason == StopReason::kNone) {
-      followed_.q = desired.q;
-      followed_.qd = desired.qd;
-      followed_.qdd = desired.qdd;
-      return followed_;
-    }
-    stop(fault.reason, fault.joint);
+const Reference& ReferenceGuard::next(const Reference& desired, double period, double interval,
+                                      const JointState& measured) noexcept {
+  if (stopped()) return again(period);
+  Fault fault = faultOf(desired, limits_, types_);
+  if (fault.reason == StopReason::kNone && !ramping_) {
+    const Fault step = stepOf(desired, followed_, measured, limits_, types_, interval);
+    ramping_ = step.reason != StopReason::kNone && steps_ == Steps::kRamp;
+    if (!ramping_) fault = step;
   }
-  return again(period);
+  if (fault.reason != StopReason::kNone) {
+    stop(fault.reason, fault.joint);
+    return again(period);
+  }
+  moving_ = (desired.qd.array() != 0.0).any() || (desired.qdd.array() != 0.0).any();
+  if (ramping_) ramping_ = !approach(desired, period);
+  if (!ramping_) {
+    followed_.q = desired.q;
+    followed_.qd = desired.qd;
+    followed_.qdd = desired.qdd;
+  }
+  return followed_;
+}
+
+bool ReferenceGuard::approach(const Reference& desired, double period) noexcept {
+  if (!(period > 0)) return false;
+  bool there = true;
+  for (Eigen::Index j = 0; j < followed_.q.size(); ++j) {
+    const double change = slope_[j] * period, limit = limits_.velocity[j];
+    double &q = followed_.q[j], &qd = followed_.qd[j];
+    const double way =
+        chain_dynamics::unwrapped(types_[static_cast<std::size_t>(j)], desired.q[j], q) - q;
+    there = there && std::abs(way) <= change * period && std::abs(desired.qd[j] - qd) <= change;
+    // The speed from which it still stops there: v T + v^2 / (2 a) = way.
+    const double speed = std::sqrt(change * change + 2.0 * slope_[j] * std::abs(way)) - change;
+    const double wanted = std::clamp(desired.qd[j] + std::copysign(speed, way), -limit, limit);
+    const double next = std::clamp(wanted, qd - change, qd + change);
+    followed_.qdd[j] = (next - qd) / period;
+    qd = next;
+    q += qd * period;
+  }
+  return there;
 }
 
 const Reference& ReferenceGuard::again(double period) noexcept {
@@ -139,10 +205,6 @@ void ReferenceGuard::stop(StopReason reason, Eigen::Index joint) noexcept {
   reason_ = reason;
   joint_ = joint;
   safe_stop_.begin(followed_.q, followed_.qd);
-}
-
-bool ReferenceGuard::isMoving() const noexcept {
-  return (followed_.qd.array() != 0.0).any() || (followed_.qdd.array() != 0.0).any();
 }
 
 }  // namespace v2

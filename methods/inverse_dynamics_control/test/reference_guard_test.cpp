@@ -33,8 +33,8 @@ TEST(ReferenceGuard, RestsWhereItStartsUntilTheFirstReference) {
 
 TEST(ReferenceGuard, SoundReferencesPassAsTheyAre) {
   ReferenceGuard g = guard();
-  g.start(vec({0.0, 0.0}));
-  const Reference desired = referenceOf(vec({0.2, 0.3}), vec({0.4, -2.0}), vec({-1.9, -3.9}));
+  g.start(vec({0.15, 0.0}));
+  const Reference desired = referenceOf(vec({0.2, 0.3}), vec({0.4, -0.7}), vec({-1.9, -3.9}));
   const Reference& followed = g.next(desired, kPeriod);
   EXPECT_EQ(followed.q, desired.q);
   EXPECT_EQ(followed.qd, desired.qd);
@@ -45,8 +45,9 @@ TEST(ReferenceGuard, SoundReferencesPassAsTheyAre) {
 
 TEST(ReferenceGuard, MotionsTimedWithinTheLimitsPass) {
   ReferenceGuard g = guard();
-  g.start(vec({0.0, 0.0}));
-  g.next(referenceOf(vec({0.0, 0.0}), vec({0.5, -3.0}) * 1.003, vec({4.0, 2.0}) * 1.003), kPeriod);
+  const Eigen::VectorXd q = vec({0.0, 0.0}), qd = vec({0.5, -3.0}) * 1.003;
+  g.start(q);
+  g.next(referenceOf(q, qd, vec({4.0, 2.0}) * 1.003), kPeriod, kPeriod, stateOf(q, qd));
   EXPECT_FALSE(g.stopped());
 }
 
@@ -73,7 +74,7 @@ TEST(ReferenceGuard, TheFirstUnsoundReferenceStopsForGood) {
   for (const Case& each : unsound()) {
     SCOPED_TRACE(text(each.reason));
     ReferenceGuard g = guard();
-    g.start(vec({0.0, 0.0}));
+    g.start(vec({0.15, 0.3}));
     g.next(moving(), kPeriod);
     // from 0.4 rad/s with 1 rad/s^2: 0.4 s, 0.08 rad
     for (int k = 0; k < 3; ++k) {
@@ -92,6 +93,83 @@ TEST(ReferenceGuard, TheFirstUnsoundReferenceStopsForGood) {
     EXPECT_FALSE(g.stopped());
     EXPECT_EQ(g.next(moving(), kPeriod).q, moving().q);
   }
+}
+
+// After 0.1 s: twice 0.05 rad of joint a, twice 0.3 rad of joint b; twice 0.4 rad/s.
+TEST(ReferenceGuard, AStepBeyondTheLimitsStopsForGood) {
+  const Eigen::VectorXd zero = vec({0.0, 0.0});
+  const auto after = [&](const Reference& desired, double interval, const JointState& measured) {
+    ReferenceGuard g = guard();
+    g.start(zero);
+    g.next(desired, kPeriod, interval, measured);
+    return g.reason();
+  };
+  const auto at = [&](double q, double qd) {
+    return referenceOf(vec({0.0, q}), vec({0.0, qd}), zero);
+  };
+  const JointState rest = stateOf(zero, zero), unknown = stateOf(vec({kNan, kNan}), zero);
+  for (const double sign : {-1.0, 1.0}) {
+    EXPECT_EQ(after(at(0.59 * sign, 0.0), kPeriod, rest), StopReason::kNone);
+    EXPECT_EQ(after(at(0.61 * sign, 0.0), kPeriod, rest), StopReason::kStep);
+    EXPECT_EQ(after(at(0.61 * sign, 0.0), 2 * kPeriod, rest), StopReason::kNone);
+    EXPECT_EQ(after(at(0.0, 0.79 * sign), kPeriod, rest), StopReason::kNone);
+    EXPECT_EQ(after(at(0.0, 0.81 * sign), kPeriod, rest), StopReason::kStep);
+    // A reference may come nearer to the arm, as far as it is, and no farther.
+    const JointState there = stateOf(vec({0.0, 1.0 * sign}), vec({0.0, 2.0 * sign}));
+    EXPECT_EQ(after(at(1.5 * sign, 2.5 * sign), kPeriod, there), StopReason::kNone);
+    EXPECT_EQ(after(at(1.7 * sign, 0.0), kPeriod, there), StopReason::kStep);
+    EXPECT_EQ(after(at(-0.7 * sign, 0.0), kPeriod, there), StopReason::kStep);
+    EXPECT_EQ(after(at(0.61 * sign, 0.0), kPeriod, unknown), StopReason::kStep);
+  }
+}
+
+TEST(ReferenceGuard, AStepIsRampedOnRequest) {
+  constexpr double kShort = 1e-3;  // s
+  ReferenceGuard g(limits(), vec({1.0, 2.0}), kNames, {}, Steps::kRamp);
+  const Eigen::VectorXd zero = vec({0.0, 0.0}), there = vec({0.9, -1.5});
+  g.start(zero);
+  const Reference desired = referenceOf(there, zero, zero);
+  Eigen::VectorXd q = zero, qd = zero;
+  int cycles = 0;
+  do {
+    const Reference& next = g.next(desired, kShort);
+    EXPECT_LE((next.q - q).cwiseAbs()[0], 0.5 * kShort + kRounding);
+    EXPECT_LE((next.qd - qd).cwiseAbs()[0], 1.0 * kShort + kRounding);
+    EXPECT_LE((next.qd - qd).cwiseAbs()[1], 2.0 * kShort + kRounding);
+    q = next.q, qd = next.qd;
+  } while (g.ramping() && ++cycles < 10000);
+  // 0.9 rad at up to 0.5 rad/s, 1 rad/s^2
+  EXPECT_NEAR(cycles * kShort, 0.9 / 0.5 + 0.5 / 1.0, 0.02);
+  EXPECT_EQ(q, there);
+  EXPECT_FALSE(g.isMoving());
+  EXPECT_FALSE(g.stopped());
+}
+
+TEST(ReferenceGuard, ARampEndsInAMotion) {
+  constexpr double kShort = 1e-3;  // s
+  ReferenceGuard g(limits(), vec({1.0, 2.0}), kNames, {}, Steps::kRamp);
+  g.start(vec({0.0, 0.0}));
+  Reference desired = referenceOf(vec({-0.8, 0.0}), vec({0.2, 0.0}), vec({0.0, 0.0}));
+  g.next(desired, kShort);
+  for (int k = 0; k < 8000 && g.ramping(); ++k) {
+    desired.q += desired.qd * kShort;
+    g.next(desired, kShort);
+  }
+  EXPECT_FALSE(g.ramping());
+  EXPECT_EQ(g.again(kShort).q, desired.q);
+  desired.q[0] = kNan;
+  g.next(desired, kShort);
+  EXPECT_EQ(g.reason(), StopReason::kNotFinite);
+}
+
+TEST(ReferenceGuard, AFaultEndsARamp) {
+  ReferenceGuard g(limits(), vec({1.0, 1.0}), kNames, {}, Steps::kRamp);
+  const Eigen::VectorXd zero = vec({0.0, 0.0});
+  g.start(zero);
+  g.next(referenceOf(vec({0.9, 0.0}), zero, zero), kPeriod);
+  EXPECT_TRUE(g.ramping());
+  g.next(referenceOf(vec({0.9, kNan}), zero, zero), kPeriod);
+  EXPECT_EQ(g.reason(), StopReason::kNotFinite);
 }
 
 TEST(ReferenceGuard, AStopKeepsItsFirstReason) {

@@ -8,9 +8,9 @@
 ///     if (guard.stopped()) report(text(guard.reason()));
 ///
 /// A law answers to a NaN with its safe torque and then follows the next finite reference, from
-/// wherever the arm is by then. A guard precedes it: the first reference that isn't finite or
-/// lies beyond a limit begins a SafeStop from the last good one, and nothing is followed any more
-/// until start().
+/// wherever the arm is by then. A guard precedes it: the first reference that isn't finite, lies
+/// beyond a limit, or steps farther than the limits allow begins a SafeStop from the last good one,
+/// and nothing is followed any more until start().
 #pragma once
 
 #include <Eigen/Core>
@@ -45,6 +45,7 @@ enum class StopReason {
   kPosition,      ///< a position lies beyond its limits
   kVelocity,      ///< a velocity lies beyond its limit
   kAcceleration,  ///< an acceleration lies beyond its limit
+  kStep,          ///< it is farther from the last one than velocity and acceleration limits allow
   kStale,         ///< no new one came while the last one still moves
   kWrongSize,     ///< it hasn't one number per joint
 };
@@ -52,6 +53,12 @@ enum class StopReason {
 /// Text of a message, without a full stop. Real time: no allocation, lock, exception or
 /// system call. Threads: safe.
 const char* text(StopReason reason) noexcept;
+
+/// What becomes of a reference that is too far from the last one.
+enum class Steps {
+  kRefuse,  ///< a stop
+  kRamp,    ///< the guard moves there, within the velocity limits, with the stop's deceleration
+};
 
 /// Lets sound references pass, and stops for good at the first one that isn't. Not thread-safe.
 ///
@@ -66,15 +73,28 @@ class ReferenceGuard {
   /// Throws inverse_dynamics_solver::InvalidParameterValueException: wrong size or value.
   ReferenceGuard(ReferenceLimits limits, const Eigen::Ref<const Eigen::VectorXd>& deceleration,
                  const std::vector<std::string>& joint_names,
-                 std::vector<chain_dynamics::JointType> joint_types = {});
+                 std::vector<chain_dynamics::JointType> joint_types = {},
+                 Steps steps = Steps::kRefuse);
 
   /// Rest at q, n finite numbers, until the first call of next(); forgets an earlier stop.
   void start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept;
 
-  /// The reference to follow now: `desired`, or the next one of the stop.
+  /// The reference to follow now: `desired`, or the next one of the stop or of the ramp.
   ///
-  /// @param period  s since the last call.
-  const Reference& next(const Reference& desired, double period) noexcept;
+  /// A position may be as far from the last one as the velocity limit allows in twice the interval,
+  /// as cycles jitter; a velocity, as the acceleration limit allows. Both may come nearer to the
+  /// measured state than the last reference: another motion may begin where the arm is.
+  ///
+  /// @param period    s since the last call.
+  /// @param interval  s since the reference before `desired`; `period` where each cycle has its own.
+  /// @param measured  n each; what isn't finite doesn't count.
+  const Reference& next(const Reference& desired, double period, double interval,
+                        const JointState& measured) noexcept;
+
+  /// The same where each cycle has its own reference, without a measured state.
+  const Reference& next(const Reference& desired, double period) noexcept {
+    return next(desired, period, period, unknown_);
+  }
 
   /// The last reference again, where no new one has come.
   const Reference& again(double period) noexcept;
@@ -85,7 +105,10 @@ class ReferenceGuard {
   void stop(StopReason reason, Eigen::Index joint = -1) noexcept;
 
   /// Whether the last reference asks for a motion.
-  bool isMoving() const noexcept;
+  bool isMoving() const noexcept { return moving_; }
+
+  /// Whether the guard moves to a reference that was too far.
+  bool ramping() const noexcept { return ramping_; }
 
   /// Whether a stop has begun, why, and the first joint that made it (-1: none in particular).
   bool stopped() const noexcept { return reason_ != StopReason::kNone; }
@@ -93,10 +116,17 @@ class ReferenceGuard {
   Eigen::Index joint() const noexcept { return joint_; }
 
  private:
+  // Moves followed_ to a reference by one period; whether it was there.
+  bool approach(const Reference& desired, double period) noexcept;
+
   ReferenceLimits limits_;
   std::vector<chain_dynamics::JointType> types_;
   SafeStop safe_stop_;
+  Steps steps_;
+  OwnedVector slope_;  // of ramps: rad/s^2
   Reference followed_;
+  JointState unknown_;
+  bool moving_ = false, ramping_ = false;
   StopReason reason_ = StopReason::kNone;
   Eigen::Index joint_ = -1;
 };
