@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/control_law.hpp"
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -79,7 +80,9 @@ Status ControlLaw::refuse(Status why, const JointState& state, double period,
   const bool positioned = state.q.size() == n && state.q.allFinite();
   if (positioned && !updateGravity(state.q) && why == Status::kOk) why = Status::kSolverFailed;
   desired_ = gravity_;
-  if (state.qd.size() == n && state.qd.allFinite()) desired_ -= damping_.cwiseProduct(state.qd);
+  for (Eigen::Index j = 0; state.qd.size() == n && j < n; ++j) {
+    if (std::isfinite(state.qd[j])) desired_[j] -= damping_[j] * state.qd[j];
+  }
   const Status limited = output_.apply(desired_, period, tau);
   return why == Status::kOk ? limited : why;
 }

@@ -28,18 +28,16 @@ struct Fault {
   Eigen::Index joint = -1;
 };
 
-// Beyond this times a limit, and beyond the measured state, a reference steps.
-constexpr double kJitter = 2.0;
-
+// Whether a reference changes by more than `reach`, other than towards the measured state.
 bool steps(double change, double measured, double reach) noexcept {
   const double nearer = std::isfinite(measured) ? measured : 0.0;
   return change < std::min(0.0, nearer) - reach || change > std::max(0.0, nearer) + reach;
 }
 
-// The first joint that is too far from `last` after so many seconds.
+// The first joint that is too far from `last` for so many seconds.
 Fault stepOf(const Reference& desired, const Reference& last, const JointState& measured,
              const ReferenceLimits& limits, const std::vector<chain_dynamics::JointType>& types,
-             double interval) noexcept {
+             double seconds) noexcept {
   for (Eigen::Index j = 0; j < last.q.size(); ++j) {
     const auto type = types[static_cast<std::size_t>(j)];
     const auto change = [&](double q) {
@@ -47,9 +45,9 @@ Fault stepOf(const Reference& desired, const Reference& last, const JointState& 
     };
     const double fastest = std::max(limits.acceleration[j], limits.deceleration[j]);
     if (steps(change(desired.q[j]), change(measured.q[j]),
-              kJitter * limits.velocity[j] * interval + kRounding) ||
+              limits.velocity[j] * seconds + kRounding) ||
         steps(desired.qd[j] - last.qd[j], measured.qd[j] - last.qd[j],
-              kJitter * fastest * interval + kRounding)) {
+              fastest * seconds + kRounding)) {
       return {StopReason::kStep, j};
     }
   }
@@ -142,12 +140,13 @@ ReferenceGuard::ReferenceGuard(ReferenceLimits limits,
   types_.resize(joint_names.size(), chain_dynamics::JointType::kRevolute);
 }
 
-void ReferenceGuard::start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept {
-  if (q.size() != followed_.q.size()) return stop(StopReason::kWrongSize);
+void ReferenceGuard::start(const Eigen::Ref<const Eigen::VectorXd>& q,
+                           const Eigen::Ref<const Eigen::VectorXd>& qd) noexcept {
+  if (safe_stop_.begin(q, qd) == Status::kWrongSize) return stop(StopReason::kWrongSize);
   followed_.q = q;
-  followed_.qd.setZero();
+  followed_.qd = qd;
   followed_.qdd.setZero();
-  moving_ = ramping_ = false;
+  following_ = moving_ = ramping_ = false;
   reason_ = StopReason::kNone;
   joint_ = -1;
 }
@@ -157,7 +156,7 @@ const Reference& ReferenceGuard::next(const Reference& desired, double period, d
   if (stopped()) return again(period);
   Fault fault = faultOf(desired, limits_, types_);
   if (fault.reason == StopReason::kNone && !ramping_) {
-    const Fault step = stepOf(desired, followed_, measured, limits_, types_, interval);
+    const Fault step = stepOf(desired, followed_, measured, limits_, types_, interval + period);
     ramping_ = step.reason != StopReason::kNone && steps_ == Steps::kRamp;
     if (!ramping_) fault = step;
   }
@@ -165,6 +164,7 @@ const Reference& ReferenceGuard::next(const Reference& desired, double period, d
     stop(fault.reason, fault.joint);
     return again(period);
   }
+  following_ = true;
   moving_ = (desired.qd.array() != 0.0).any() || (desired.qdd.array() != 0.0).any();
   if (ramping_) ramping_ = !approach(desired, period);
   if (!ramping_) {
@@ -196,7 +196,7 @@ bool ReferenceGuard::approach(const Reference& desired, double period) noexcept 
 }
 
 const Reference& ReferenceGuard::again(double period) noexcept {
-  if (stopped()) safe_stop_.advance(period, followed_);
+  if (!following_) safe_stop_.advance(period, followed_);
   return followed_;
 }
 
@@ -204,6 +204,7 @@ void ReferenceGuard::stop(StopReason reason, Eigen::Index joint) noexcept {
   if (stopped() || reason == StopReason::kNone) return;
   reason_ = reason;
   joint_ = joint;
+  following_ = false;
   safe_stop_.begin(followed_.q, followed_.qd);
 }
 

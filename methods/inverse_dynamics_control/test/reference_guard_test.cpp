@@ -31,6 +31,20 @@ TEST(ReferenceGuard, RestsWhereItStartsUntilTheFirstReference) {
   EXPECT_FALSE(g.isMoving());
 }
 
+TEST(ReferenceGuard, FromAMotionItStopsUntilTheFirstReference) {
+  ReferenceGuard g = guard();
+  g.start(vec({0.1, 0.1}), vec({0.4, 0.0}));
+  // from 0.4 rad/s with 1 rad/s^2: 0.4 s, 0.08 rad
+  EXPECT_NEAR(g.again(kPeriod).qd[0], 0.3, kRounding);
+  EXPECT_FALSE(g.isMoving());
+  EXPECT_FALSE(g.stopped());
+  EXPECT_EQ(g.next(moving(), kPeriod).q, moving().q);
+  g.start(vec({0.1, 0.1}), vec({0.4, 0.0}));
+  for (int k = 0; k < 5; ++k) g.again(kPeriod);
+  EXPECT_NEAR(g.again(kPeriod).q[0], 0.18, kRounding);
+  EXPECT_EQ(g.again(kPeriod).qd, vec({0.0, 0.0}));
+}
+
 TEST(ReferenceGuard, SoundReferencesPassAsTheyAre) {
   ReferenceGuard g = guard();
   g.start(vec({0.15, 0.0}));

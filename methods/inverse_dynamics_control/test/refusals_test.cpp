@@ -189,6 +189,17 @@ TEST(Refusals, HoldIsTheSafeTorqueOnDemand) {
   }
 }
 
+TEST(Refusals, ALostJointLeavesTheOthersDamped) {
+  const auto solver = ChainSolver::make(twoBars());
+  GravityCompensation law(solver, unlimited(2));
+  const Eigen::VectorXd q = vec({0.3, -1.0});
+  Eigen::VectorXd tau(2);
+  EXPECT_EQ(law.hold(stateOf(q, vec({0.0, 0.0})), kPeriod, tau), Status::kOk);
+  EXPECT_EQ(law.hold(stateOf(vec({kNan, -1.0}), vec({kNan, 0.5})), kPeriod, tau),
+            Status::kStateNotFinite);
+  EXPECT_LT((tau - (solver->getGravityVector(q) - vec({0.0, 4.0 * 0.5}))).norm(), kRounding);
+}
+
 TEST(Refusals, ALawGoesOnWhenItsInputsAreGoodAgain) {
   Laws laws;
   Eigen::VectorXd before(1), after(1);

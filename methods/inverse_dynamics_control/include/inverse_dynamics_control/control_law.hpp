@@ -14,7 +14,7 @@
 ///
 /// which carries the arm and brakes it, but holds no position. Gravity is that of the measured
 /// position; without one (a NaN, a solver that fails) that of the last cycle which had one, zero
-/// before the first. Damping needs a finite velocity. So a reference that is lost for good ends in
+/// before the first. Joints without a finite velocity aren't damped. So a reference that is lost for good ends in
 /// an arm that stands and can be pushed, and a position that is lost for good needs brakes: see the
 /// status.
 #pragma once

@@ -76,13 +76,20 @@ class ReferenceGuard {
                  std::vector<chain_dynamics::JointType> joint_types = {},
                  Steps steps = Steps::kRefuse);
 
-  /// Rest at q, n finite numbers, until the first call of next(); forgets an earlier stop.
-  void start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept;
+  /// Until the first call of next(), the reference stops from q and qd, n finite numbers each; rest
+  /// without qd. Forgets an earlier stop.
+  void start(const Eigen::Ref<const Eigen::VectorXd>& q,
+             const Eigen::Ref<const Eigen::VectorXd>& qd) noexcept;
+  /// @copydoc start()
+  void start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept {
+    followed_.qd.setZero();
+    start(q, followed_.qd);
+  }
 
   /// The reference to follow now: `desired`, or the next one of the stop or of the ramp.
   ///
-  /// A position may be as far from the last one as the velocity limit allows in twice the interval,
-  /// as cycles jitter; a velocity, as the acceleration limit allows. Both may come nearer to the
+  /// A position may be as far from the last one as the velocity limit allows in the interval and one
+  /// period more, as cycles jitter; a velocity, as the acceleration limit allows. Both may come nearer to the
   /// measured state than the last reference: another motion may begin where the arm is.
   ///
   /// @param period    s since the last call.
@@ -126,6 +133,7 @@ class ReferenceGuard {
   OwnedVector slope_;  // of ramps: rad/s^2
   Reference followed_;
   JointState unknown_;
+  bool following_ = false;  // else the reference is that of safe_stop_
   bool moving_ = false, ramping_ = false;
   StopReason reason_ = StopReason::kNone;
   Eigen::Index joint_ = -1;
