@@ -5,6 +5,7 @@
 #include <rcl_yaml_param_parser/parser.h>
 
 #include <chain_dynamics/text.hpp>
+#include <cmath>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <rcl_interfaces/msg/parameter_descriptor.hpp>
@@ -95,6 +96,25 @@ void declareParametersOfOthers(rclcpp::node_interfaces::NodeParametersInterface&
   }
 }
 
+// That of the update rate [Hz], with which a stated one must agree; 0: not known, or not stated.
+double samplingPeriod(double stated, unsigned update_rate) {
+  constexpr double kRounded = 0.01;  // of a stated period: 0.0167 s for 60 Hz
+  if (update_rate == 0) {
+    if (stated > 0) return stated;
+    throw ParameterUninitializedException(
+        "parameter 'update_rate'", "not set",
+        "the controller manager's update rate [Hz], which humble's doesn't tell its controllers",
+        "nothing", "set it for the controller, too");
+  }
+  const double period = 1.0 / update_rate;
+  if (stated == 0 || std::abs(stated - period) <= kRounded * period) return period;
+  const auto text = [](double seconds) { return chain_dynamics::numberText(seconds) + " s"; };
+  throw InvalidParameterValueException(
+      "parameter 'period'", "not that of the control loop",
+      text(period) + " (update_rate is " + std::to_string(update_rate) + " Hz)", text(stated),
+      "leave it out");
+}
+
 FrictionSource frictionSource(const std::string& name) {
   if (name == "reference_velocity") return FrictionSource::kReferenceVelocity;
   if (name == "measured_velocity") return FrictionSource::kMeasuredVelocity;
@@ -102,11 +122,6 @@ FrictionSource frictionSource(const std::string& name) {
 }
 
 }  // namespace
-
-double Setup::period() const noexcept {
-  if (parameters.period > 0) return parameters.period;
-  return update_rate > 0 ? 1.0 / update_rate : 0.0;
-}
 
 std::string Setup::tip() const {
   rclcpp::Parameter tip;
@@ -152,7 +167,7 @@ Setup ArmSource::setup(const std::string& managers_description, unsigned update_
           law,
           {solver, joints, std::move(commands),
            inverse_dynamics_control::describedLimits(description, joints)},
-          update_rate};
+          samplingPeriod(parameters.period, update_rate)};
 }
 
 inverse_dynamics_control::Compensated compensatedByRobot(const Setup& setup) {

@@ -36,10 +36,7 @@ struct Setup {
   ArmParameters parameters;
   LawParameters law;  ///< the defaults where nothing is commanded
   Arm arm;
-  unsigned update_rate;  ///< of the controller [Hz]; 0: not known
-
-  /// Period of the control loop [s]; 0: neither the parameter nor the update rate says it.
-  double period() const noexcept;
+  double period;  ///< of the control loop [s]
 
   /// The parameter `ids.tip`; empty: not set.
   std::string tip() const;
@@ -57,8 +54,9 @@ class ArmSource {
   /// Loads and initializes the solver, with the node's parameters below `ids`. Waits for nothing.
   ///
   /// @param managers_description  robot description that the controller manager has given, or "".
+  /// @param update_rate           of the controller [Hz]; 0: not known (humble).
   /// Throws inverse_dynamics_solver::Exception: a parameter that the controller doesn't declare, no
-  /// such plugin, what the solver says, other joints.
+  /// such plugin, what the solver says, other joints, a period that isn't that of the update rate.
   Setup setup(const std::string& managers_description, unsigned update_rate) const;
 
  private:
@@ -75,7 +73,7 @@ inverse_dynamics_control::Compensated compensatedByRobot(const Setup& setup);
 /// Options of the law.
 ///
 /// Throws inverse_dynamics_solver::InvalidParameterValueException: wrong size or value.
-/// ParameterUninitializedException: no limit of effort; no period where one is needed.
+/// ParameterUninitializedException: no limit of effort.
 inverse_dynamics_control::LawOptions lawOptions(const Setup& setup,
                                                 const std::string& friction_source);
 

@@ -13,19 +13,11 @@ namespace {
 
 using inverse_dynamics_control::jointNumbers;
 using inverse_dynamics_solver::InvalidParameterValueException;
-using inverse_dynamics_solver::ParameterUninitializedException;
 using Numbers = std::vector<double>;
 
 const char* const kValues = "damping.values";
 const char* const kRate = "damping.rate";
 const char* const kPosture = "damping.posture";
-
-double requiredPeriod(const Setup& setup) {
-  if (const double period = setup.period(); period > 0) return period;
-  throw ParameterUninitializedException(
-      "parameter 'period'", "not set", "the period of the control loop [s], for damping.rate",
-      "nothing", "set it, or 'update_rate' [Hz], or 'damping.values'");
-}
 
 // The joints' numbers, finite and >= 0.
 Eigen::VectorXd givenDamping(const Numbers& values, const Arm& arm) {
@@ -54,7 +46,7 @@ Eigen::VectorXd dampingOf(const Setup& setup, const ParameterValues& parameters)
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.solver->jointCount());
   return inverse_dynamics_control::dampingFor(
       *arm.solver, jointNumbers(kPosture, parameters.at(kPosture).get<Numbers>(), arm.joints, zero),
-      parameters.at(kRate).get<double>(), requiredPeriod(setup));
+      parameters.at(kRate).get<double>(), setup.period);
 }
 
 }  // namespace

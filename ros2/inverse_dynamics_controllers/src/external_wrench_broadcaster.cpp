@@ -62,7 +62,7 @@ std::string frameOf(const Setup& setup, const Parameters& params) {
 ContactOptions optionsOf(const Setup& setup, const Parameters& params) {
   const std::vector<std::string>& joints = setup.arm.joints;
   requireNoise(params.noise);
-  requireShortPeriod(setup.period(), params.longest_period);
+  requireShortPeriod(setup.period, params.longest_period);
   ContactOptions options;
   options.choice = estimatorOf(params.estimator);
   options.estimator.gain = jointNumbers("gain", params.gain, joints);

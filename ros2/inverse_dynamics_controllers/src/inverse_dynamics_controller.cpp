@@ -67,8 +67,7 @@ FollowingController::MakeFollower InverseDynamicsController::declareParameters()
     const auto params = parameters->get_params();
     requirePhysicalInertia(setup);
     const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
-    const auto make = [T = setup.period(),
-                       joints = setup.arm.joints](const ParameterValues& values) {
+    const auto make = [T = setup.period, joints = setup.arm.joints](const ParameterValues& values) {
       using Numbers = std::vector<double>;
       return gainsOf(values.at("gains.natural_frequency").get<Numbers>(),
                      values.at("gains.damping_ratio").get<Numbers>(), T, joints);

@@ -212,6 +212,18 @@ TEST_F(TwoArms, ControllersAndBroadcastersOfANamespaceServeItsOwn) {
   expectExternal(-weight(5.0, 0.5), "/right/arm_touch");
 }
 
+// The manager's period is 0.01 s. 120 rad/s is unstable there, and stable at 500 Hz.
+TEST_F(TwoArms, GainsAreCheckedAgainstTheManagersPeriod) {
+  const auto configured = [this](const std::string& name, const std::string& more) {
+    return configure("left", kDamping + more, name, "InverseDynamicsController");
+  };
+  const std::string fast = "    gains: {natural_frequency: [120.0]}\n";
+  EXPECT_EQ(configured("_a", fast), return_type::ERROR);
+  EXPECT_EQ(configured("_b", fast + "    period: 0.0\n"), return_type::ERROR);
+  EXPECT_EQ(configured("_c", fast + "    period: 0.002\n"), return_type::ERROR);
+  EXPECT_EQ(configured("_d", "    gains: {natural_frequency: [60.0]}\n"), return_type::OK);
+}
+
 TEST_F(TwoArms, AMisspeltLimitIsRefusedByTheManager) {
   EXPECT_EQ(configure("left", std::string(kDamping) + "    limits: {effrot: [1.0]}\n"),
             return_type::ERROR);

@@ -292,7 +292,7 @@ TEST_F(ExternalWrenchBroadcasterTest, RefusesAFrameWithoutAName) {
 }
 
 TEST_F(ExternalWrenchBroadcasterTest, RefusesALoopOfWhichEachCycleIsAGap) {
-  expectRefused(but("period", rclcpp::ParameterValue(0.05)),
+  expectRefused(but("update_rate", rclcpp::ParameterValue(20)),
                 "parameter 'longest_period': shorter than the period of the control loop: expected "
                 "more than 0.050000 s, got 0.020000");
 }

@@ -63,7 +63,6 @@ TEST_F(GravityCompensationControllerTest, DampingCanBeMadeOfARate) {
   Parameters parameters = good();
   parameters.erase("damping.values");
   parameters["damping.rate"] = rclcpp::ParameterValue(0.01);
-  parameters["period"] = rclcpp::ParameterValue(kPeriod);
   ASSERT_TRUE(configure(parameters) && activate()) << log.text();
   EXPECT_EQ(update(), return_type::OK);
   const Eigen::VectorXd damping =
@@ -78,7 +77,6 @@ TEST_F(GravityCompensationControllerTest, DampingChangesWhileItRuns) {
     return Eigen::VectorXd(solver()->getGravityVector(q) - damping.cwiseProduct(qd));
   };
   Parameters parameters = good();
-  parameters["period"] = rclcpp::ParameterValue(kPeriod);
   ASSERT_TRUE(configure(parameters) && activate()) << log.text();
   EXPECT_EQ(update(), return_type::OK);
   EXPECT_EQ(set("damping.values", rclcpp::ParameterValue(Numbers{6, 5, 4, 3, 2, 1})), "");
@@ -99,7 +97,6 @@ TEST_F(GravityCompensationControllerTest, DampingChangesWhileItRuns) {
 TEST_F(GravityCompensationControllerTest, DampingThatDoesNotFitIsRefusedAndTheOldOneStays) {
   using Numbers = std::vector<double>;
   Parameters parameters = good();
-  parameters["period"] = rclcpp::ParameterValue(kPeriod);
   ASSERT_TRUE(configure(parameters) && activate()) << log.text();
   EXPECT_EQ(update(), return_type::OK);
   const Eigen::VectorXd before = hardware.effort();

@@ -163,7 +163,6 @@ TEST_F(InverseDynamicsControllerTest, AShortFaultIsTolerated) {
 
 TEST_F(InverseDynamicsControllerTest, GainsChangeWhileItRuns) {
   Parameters parameters = good();
-  parameters["period"] = rclcpp::ParameterValue(kPeriod);
   ASSERT_TRUE(start(parameters)) << log.text();
   setMotion(q_ref, qd_ref, qdd_ref);
   EXPECT_EQ(update(), return_type::OK);

@@ -118,7 +118,7 @@ TEST_F(Refusals, GainsForOtherJoints) {
 
 TEST_F(Refusals, GainsThatAreUnstableInTheSampledLoop) {
   Parameters parameters = but("gains.natural_frequency", rclcpp::ParameterValue(Numbers{200.0}));
-  parameters["period"] = rclcpp::ParameterValue(0.008);
+  parameters["update_rate"] = rclcpp::ParameterValue(125);  // slower than the manager
   expectRefused(
       parameters,
       "parameter 'gains': joint shoulder_pan_joint: unstable in the sampled loop: expected "
@@ -133,10 +133,14 @@ TEST_F(Refusals, OtherJoints) {
                 "wrist_2_joint, wrist_3_joint, got 2 (a, b); correct them");
 }
 
-TEST_F(Refusals, DampingOfARateWithoutAPeriod) {
-  expectRefused(but("damping.values", rclcpp::ParameterValue(Numbers{})),
-                "parameter 'period': not set: expected the period of the control loop [s], for "
-                "damping.rate, got nothing; set it, or 'update_rate' [Hz], or 'damping.values'");
+TEST_F(Refusals, APeriodThatIsNotThatOfTheUpdateRate) {
+  expectRefused(but("period", rclcpp::ParameterValue(0.002)),
+                "parameter 'period': not that of the control loop: expected 0.001 s (update_rate "
+                "is 1000 Hz), got 0.002 s; leave it out");
+}
+
+TEST_F(Refusals, ButNotAPeriodThatAgrees) {
+  EXPECT_TRUE(configure(but("period", rclcpp::ParameterValue(kPeriod)))) << log.text();
 }
 
 TEST_F(Refusals, JointsThatTheRobotDescriptionLacks) {

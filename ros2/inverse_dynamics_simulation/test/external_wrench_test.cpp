@@ -35,7 +35,6 @@ class Holder : public ControllerFixture<GravityCompensationController> {
     parameters.erase("damping.values");  // for 5 1/s
     parameters["damping.posture"] =
         rclcpp::ParameterValue(std::vector<double>{0.4, -1.2, 1.2, -1.0, -1.5, 0.3});
-    parameters["period"] = rclcpp::ParameterValue(inverse_dynamics_controllers::kPeriod);
     hardware.set(arm.q(), arm.qd());
     return configure(parameters) && activate();
   }

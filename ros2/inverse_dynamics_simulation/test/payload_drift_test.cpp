@@ -21,7 +21,7 @@ using inverse_dynamics_controllers::vec;
 
 constexpr double kLoad = 2.0;         // kg, at the tip
 constexpr double kTime = 10.0;        // s
-constexpr double kLoopPeriod = 2e-3;  // s
+constexpr double kLoopPeriod = 2e-3;  // s, of 500 Hz
 
 struct Posture {
   std::string name;
@@ -95,7 +95,7 @@ class Guided : public ControllerFixture<GravityCompensationController> {
     parameters.erase("damping.values");  // for 5 1/s
     parameters["damping.posture"] =
         rclcpp::ParameterValue(std::vector<double>(start.q.begin(), start.q.end()));
-    parameters["period"] = rclcpp::ParameterValue(kLoopPeriod);
+    parameters["update_rate"] = rclcpp::ParameterValue(500);
     return parameters;
   }
 

@@ -39,7 +39,8 @@ using hardware_interface::LoanedStateInterface;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPeriod = 1e-3;  // s
+constexpr int kRate = 1000;              // Hz
+constexpr double kPeriod = 1.0 / kRate;  // s
 constexpr const char* kKdl = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL";
 constexpr const char* kUr10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10";
 
@@ -146,7 +147,8 @@ class ControllerFixture : public ::testing::Test {
             {"robot_description", rclcpp::ParameterValue(ur10Description())},
             {"ids.root", rclcpp::ParameterValue("base_link")},
             {"ids.tip", rclcpp::ParameterValue("tool0")},
-            {"damping.values", rclcpp::ParameterValue(std::vector<double>{4.0})}};
+            {"damping.values", rclcpp::ParameterValue(std::vector<double>{4.0})},
+            {"update_rate", rclcpp::ParameterValue(kRate)}};
   }
 
   /// @param arguments  of the node: `--ros-args --params-file FILE`.
@@ -160,6 +162,7 @@ class ControllerFixture : public ::testing::Test {
 #ifdef INVERSE_DYNAMICS_CONTROLLERS_HAS_INTERFACE_PARAMS
     controller_interface::ControllerInterfaceParams params;
     params.controller_name = "under_test";
+    setManagersRate(params, 0);
     params.node_options = options;
     return controller.init(params) == return_type::OK;
 #else
@@ -226,6 +229,17 @@ class ControllerFixture : public ::testing::Test {
   rclcpp::executors::SingleThreadedExecutor executor;
 
  private:
+  /// Newer releases of jazzy and later.
+  template <class Params>
+  static auto setManagersRate(Params& params, int)
+      -> decltype(void(params.controller_manager_update_rate)) {
+    params.update_rate = params.controller_manager_update_rate = kRate;
+  }
+  template <class Params>
+  static void setManagersRate(Params& params, long) {
+    params.update_rate = kRate;
+  }
+
   bool spins_ = false;
 };
 
