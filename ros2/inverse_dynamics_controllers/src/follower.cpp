@@ -8,6 +8,7 @@ namespace inverse_dynamics_controllers {
 using inverse_dynamics_control::jointNumbers;
 using inverse_dynamics_control::ReferenceGuard;
 using inverse_dynamics_control::ReferenceLimits;
+using inverse_dynamics_control::Steps;
 
 ChangingGains<inverse_dynamics_control::PdGains> pdGains(const Setup& setup) {
   const auto make = [joints = setup.arm.joints](const ParameterValues& values) {
@@ -32,7 +33,8 @@ ReferenceInput referenceInput(const Setup& setup, const ReferenceLayout& layout,
       jointNumbers("limits.acceleration", own.acceleration, joints, urdf.deceleration)};
   const ReferenceGuard guard(limits,
                              jointNumbers("stop_deceleration", params.stop_deceleration, joints),
-                             joints, setup.arm.solver->jointTypes());
+                             joints, setup.arm.solver->jointTypes(),
+                             params.reference_steps == "ramp" ? Steps::kRamp : Steps::kRefuse);
   return {setup.node, layout, joints, guard, params.reference_timeout};
 }
 

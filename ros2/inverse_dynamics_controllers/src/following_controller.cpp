@@ -44,7 +44,7 @@ CallbackReturn FollowingController::on_activate(const rclcpp_lifecycle::State&) 
     requireConfigured(follower_ != nullptr);
     follower_->loop().start(follower_->law(), state_interfaces_, command_interfaces_);
     forgetReferences();
-    follower_->input().start(follower_->loop().state().q, references_);
+    follower_->input().start(follower_->loop().state(), references_);
   });
 }
 
@@ -85,7 +85,7 @@ controller_interface::return_type FollowingController::update_and_write_commands
   if (chained) readReferences(references_);
   const auto update = [&](const inverse_dynamics_control::JointState& state, double dt,
                           Eigen::VectorXd& tau) {
-    follower.input().advance(references_, chained, dt, follower.loop().report());
+    follower.input().advance(references_, chained, state, dt, follower.loop().report());
     return follower.update(state, references_, dt, tau);
   };
   const auto result =

@@ -49,14 +49,20 @@ bool ReferenceLayout::effortIsUntouched(const std::vector<double>& values) const
   return isUntouched(values, kEffort);
 }
 
-void ReferenceLayout::readMotion(const std::vector<double>& values,
+bool ReferenceLayout::readMotion(const std::vector<double>& values,
                                  inverse_dynamics_control::Reference& reference) const noexcept {
+  bool changed = false;
   for (std::size_t j = 0; j < joints_; ++j) {
     const auto row = static_cast<Eigen::Index>(j);
-    reference.q[row] = values[place(kPosition, j)];
-    reference.qd[row] = values[place(kVelocity, j)];
-    reference.qdd[row] = has(kAcceleration) ? values[place(kAcceleration, j)] : 0.0;
+    const auto read = [&](double& number, double value) {
+      changed = changed || number != value;
+      number = value;
+    };
+    read(reference.q[row], values[place(kPosition, j)]);
+    read(reference.qd[row], values[place(kVelocity, j)]);
+    read(reference.qdd[row], has(kAcceleration) ? values[place(kAcceleration, j)] : 0.0);
   }
+  return changed;
 }
 
 void ReferenceLayout::readEffort(const std::vector<double>& values,

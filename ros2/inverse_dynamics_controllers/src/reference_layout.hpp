@@ -37,7 +37,9 @@ class ReferenceLayout {
   bool effortIsUntouched(const std::vector<double>& values) const noexcept;
 
   /// Motion of the references; zero acceleration where there is none among them.
-  void readMotion(const std::vector<double>& values,
+  ///
+  /// @return whether it is another one than `reference` was.
+  bool readMotion(const std::vector<double>& values,
                   inverse_dynamics_control::Reference& reference) const noexcept;
 
   /// Effort of the references [N m].

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
+#include <cmath>
 #include <cstddef>
 #include <trajectory_msgs/msg/joint_trajectory_point.hpp>
 
@@ -86,21 +87,33 @@ std::string referencesOf(const JointTrajectory& message, const ReferenceLayout& 
 struct ReferenceTopic::Inbox {
   ReferenceLayout layout;
   std::vector<std::string> joints;
+  double oldest;  // s
   LatestValue<std::vector<double>> newest;
   rclcpp::Logger logger;
   rclcpp::Clock::SharedPtr clock;
 
   void receive(const JointTrajectory& message) {
-    const std::string error = referencesOf(message, layout, joints, newest.back());
+    std::string error = stampError(message.header.stamp);
+    if (error.empty()) error = referencesOf(message, layout, joints, newest.back());
     if (error.empty()) return newest.publish();
     RCLCPP_ERROR_THROTTLE(logger, *clock, 1000, "~/reference: ignored: %s", error.c_str());
+  }
+
+  std::string stampError(const builtin_interfaces::msg::Time& stamp) const {
+    const rclcpp::Time sent(stamp, clock->get_clock_type());
+    if (sent.nanoseconds() == 0) return "";
+    const double age = (clock->now() - sent).seconds();
+    if (std::abs(age) <= oldest) return "";
+    return "header.stamp: expected now, or zero, got " +
+           chain_dynamics::numberText(std::abs(age), 3) + " s " + (age > 0 ? "ago" : "ahead") +
+           "; reference_timeout is " + chain_dynamics::numberText(oldest) + " s";
   }
 };
 
 ReferenceTopic::ReferenceTopic(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
                                const ReferenceLayout& layout,
-                               const std::vector<std::string>& joints)
-    : inbox_(new Inbox{layout, joints,
+                               const std::vector<std::string>& joints, double oldest)
+    : inbox_(new Inbox{layout, joints, oldest,
                        LatestValue<std::vector<double>>(std::vector<double>(layout.size())),
                        node->get_logger(), node->get_clock()}),
       subscription_(node->create_subscription<JointTrajectory>(

@@ -3,7 +3,7 @@
 /// References from a topic, for a chainable controller that nothing precedes.
 ///
 /// A message is a trajectory_msgs/msg/JointTrajectory with exactly one point: the reference from
-/// now on. What doesn't fit is reported and ignored.
+/// now on. What doesn't fit, or has the stamp of another time, is reported and ignored.
 #pragma once
 
 #include <memory>
@@ -28,8 +28,10 @@ std::string referencesOf(const trajectory_msgs::msg::JointTrajectory& message,
 /// Subscribes to ~/reference, and hands the newest numbers to the control loop without a lock.
 class ReferenceTopic {
  public:
+  /// @param oldest  how far from now a stamp may be [s]; a stamp of zero means now.
   ReferenceTopic(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
-                 const ReferenceLayout& layout, const std::vector<std::string>& joints);
+                 const ReferenceLayout& layout, const std::vector<std::string>& joints,
+                 double oldest);
 
   /// Copies the newest references, if there are new ones. Real time: no allocation, lock, exception
   /// or system call.

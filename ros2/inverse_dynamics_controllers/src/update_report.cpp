@@ -78,6 +78,9 @@ std::vector<UpdateReport::Line> UpdateReport::takeLines() {
   if (const std::uint64_t mask = rate_limited_.exchange(0, kRelaxed)) {
     lines.push_back({false, "effort held back by limits.effort_rate: " + names(mask)});
   }
+  if (ramps_.exchange(0, kRelaxed) != 0) {
+    lines.push_back({false, std::string(text(StopReason::kStep)) + ": ramped"});
+  }
   if (const std::uint32_t times = not_written_.exchange(0, kRelaxed)) {
     lines.push_back({true, "an effort couldn't be written to the hardware in " +
                                std::to_string(times) + " cycles"});

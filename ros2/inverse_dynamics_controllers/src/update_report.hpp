@@ -34,6 +34,9 @@ class UpdateReport {
   /// The reference is followed no longer.
   void noteStop(inverse_dynamics_control::StopReason reason, Eigen::Index joint) noexcept;
 
+  /// A reference was too far, and is approached.
+  void noteRamp() noexcept { ramps_.fetch_add(1, kRelaxed); }
+
   /// The controller gives up: nothing but the safe torque from now on.
   void noteGivenUp(inverse_dynamics_control::Status why) noexcept;
 
@@ -49,7 +52,7 @@ class UpdateReport {
   std::vector<std::string> joints_;
   std::array<std::atomic<std::uint32_t>, 9> cycles_{};  // by Status
   std::atomic<std::uint64_t> saturated_{0}, rate_limited_{0};
-  std::atomic<std::uint32_t> not_written_{0};
+  std::atomic<std::uint32_t> not_written_{0}, ramps_{0};
   std::atomic<int> stop_{0}, stop_joint_{-1}, given_up_{0};
 };
 

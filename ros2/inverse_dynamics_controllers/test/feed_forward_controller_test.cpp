@@ -23,7 +23,7 @@ class FeedForwardControllerTest : public ChainedFixture<FeedForwardController> {
   const Eigen::VectorXd q = vec({0.3, -1.2, 0.9, -0.4, 0.7, 0.2});
   const Eigen::VectorXd qd = vec({0.1, -0.2, 0.3, 0.2, -0.1, 0.4});
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(6);
-  const Eigen::VectorXd q_ref = q + vec({0.02, -0.01, 0.03, 0.01, 0.02, -0.03});
+  const Eigen::VectorXd q_ref = q + vec({0.002, -0.001, 0.003, 0.001, 0.002, -0.003});
   const Eigen::VectorXd qd_ref = vec({0.2, -0.1, 0.1, 0.3, 0.2, 0.1});
   const Eigen::VectorXd qdd_ref = vec({0.5, -0.5, 1.0, 0.2, -0.4, 0.3});
   const Eigen::VectorXd pid = vec({1.0, -2.0, 3.0, -4.0, 5.0, -6.0});

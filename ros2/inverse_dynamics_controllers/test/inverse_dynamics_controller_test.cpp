@@ -30,12 +30,21 @@ class InverseDynamicsControllerTest : public ChainedFixture<InverseDynamicsContr
     return solver()->getTorques(q, qd, acceleration);
   }
 
+  // The same after t seconds of a stop: all joints together, the fastest with the default 2 rad/s^2.
+  Eigen::VectorXd stopping(const Eigen::VectorXd& from_q, const Eigen::VectorXd& from_qd,
+                           double t) const {
+    const double T = from_qd.cwiseAbs().maxCoeff() / 2.0;
+    if (t > T - 0.5 * kPeriod) return expected(from_q + from_qd * 0.5 * T, zero, zero);
+    return expected(from_q + from_qd * (t * (1.0 - 0.5 * t / T)), from_qd * (1.0 - t / T),
+                    -from_qd / T);
+  }
+
   void SetUp() override { hardware.set(q, qd); }
 
   const Eigen::VectorXd q = vec({0.3, -1.2, 0.9, -0.4, 0.7, 0.2});
   const Eigen::VectorXd qd = vec({0.1, -0.2, 0.3, 0.2, -0.1, 0.4});
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(6);
-  const Eigen::VectorXd q_ref = q + vec({0.02, -0.01, 0.03, 0.01, 0.02, -0.03});
+  const Eigen::VectorXd q_ref = q + vec({0.002, -0.001, 0.003, 0.001, 0.002, -0.003});
   const Eigen::VectorXd qd_ref = vec({0.2, -0.1, 0.1, 0.3, 0.2, 0.1});
   const Eigen::VectorXd qdd_ref = vec({0.5, -0.5, 1.0, 0.2, -0.4, 0.3});
 };
@@ -48,10 +57,12 @@ TEST_F(InverseDynamicsControllerTest, CommandsComputedTorque) {
   EXPECT_LT((hardware.effort() - expected(q_ref, qd_ref, qdd_ref)).norm(), kRounding);
 }
 
-TEST_F(InverseDynamicsControllerTest, HoldsWhereItStartsUntilTheFirstReference) {
+TEST_F(InverseDynamicsControllerTest, StopsUntilTheFirstReference) {
   ASSERT_TRUE(start(good())) << log.text();
-  EXPECT_EQ(update(), return_type::OK);
-  EXPECT_LT((hardware.effort() - expected(q, zero, zero)).norm(), kRounding);
+  for (int k = 1; k <= 300; ++k) {
+    EXPECT_EQ(update(), return_type::OK);
+    EXPECT_LT((hardware.effort() - stopping(q, qd, k * kPeriod)).norm(), kRounding);
+  }
   EXPECT_EQ(log.text(), "");
 }
 
@@ -78,7 +89,7 @@ TEST_F(InverseDynamicsControllerTest, WhatTheRobotCompensatesIsLeftOut) {
 
 TEST_F(InverseDynamicsControllerTest, EffortsStayWithinTheLimitsOfTheRobotDescription) {
   ASSERT_TRUE(start(good())) << log.text();
-  setMotion(q + Eigen::VectorXd::Constant(6, -2.0), zero, zero);
+  setMotion(q, zero, Eigen::VectorXd::Constant(6, -1e3));
   EXPECT_EQ(update(), return_type::OK);
   const Eigen::VectorXd limits = vec({330.0, 330.0, 150.0, 56.0, 56.0, 56.0});
   EXPECT_TRUE((hardware.effort().cwiseAbs().array() <= limits.array()).all())
@@ -95,18 +106,13 @@ TEST_P(UnsoundReference, NeverReachesTheHardwareAndStopsTheArmForGood) {
   EXPECT_EQ(update(), return_type::OK);
   const auto [interface, value] = GetParam();
   setReference(2, interface, value);
-  // the stop: all joints together, the fastest with the default 2 rad/s^2
-  const double T = qd_ref.cwiseAbs().maxCoeff() / 2.0;
   for (int k = 1; k <= 3; ++k) {
     EXPECT_EQ(update(), return_type::OK);
-    const double t = k * kPeriod;
-    const Eigen::VectorXd stopping =
-        expected(q_ref + qd_ref * (t * (1.0 - 0.5 * t / T)), qd_ref * (1.0 - t / T), -qd_ref / T);
-    EXPECT_LT((hardware.effort() - stopping).norm(), kRounding);
+    EXPECT_LT((hardware.effort() - stopping(q_ref, qd_ref, k * kPeriod)).norm(), kRounding);
     setMotion(q_ref, qd_ref, qdd_ref);  // too late
   }
   for (int k = 0; k < 200; ++k) update();
-  EXPECT_LT((hardware.effort() - expected(q_ref + qd_ref * 0.5 * T, zero, zero)).norm(), kRounding);
+  EXPECT_LT((hardware.effort() - stopping(q_ref, qd_ref, 1.0)).norm(), kRounding);
 
   controller.get_node()->deactivate();
   ASSERT_TRUE(activate());
@@ -119,6 +125,7 @@ INSTANTIATE_TEST_SUITE_P(OfEachKind, UnsoundReference,
                          ::testing::Values(std::pair<std::size_t, double>{0, kNan},
                                            std::pair<std::size_t, double>{1, kInfinity},
                                            std::pair<std::size_t, double>{2, kNan},
+                                           std::pair<std::size_t, double>{0, 0.91},  // a step
                                            std::pair<std::size_t, double>{0, 4.0},
                                            std::pair<std::size_t, double>{1, -3.2}));
 
@@ -128,7 +135,29 @@ TEST_F(InverseDynamicsControllerTest, LimitsOfReferencesCanBeGiven) {
   ASSERT_TRUE(start(parameters)) << log.text();
   setMotion(q_ref, qd_ref, qdd_ref);  // one joint with 0.3 rad/s
   EXPECT_EQ(update(), return_type::OK);
-  EXPECT_LT((hardware.effort() - expected(q, zero, zero)).norm(), kRounding);
+  EXPECT_LT((hardware.effort() - stopping(q, qd, kPeriod)).norm(), kRounding);
+}
+
+TEST_F(InverseDynamicsControllerTest, AStepIsRampedOnRequest) {
+  Parameters parameters = good();
+  parameters["reference_steps"] = rclcpp::ParameterValue("ramp");
+  hardware.set(q, zero);
+  ASSERT_TRUE(start(parameters)) << log.text();
+  hardware.set(q, qd);
+  const Eigen::VectorXd there = q + vec({0.0, 0.3, 0.0, 0.0, 0.0, 0.0});
+  setMotion(there, zero, zero);
+  EXPECT_EQ(update(), return_type::OK);
+  const double v = 2.0 * kPeriod;  // with stop_deceleration
+  const Eigen::VectorXd one = vec({0.0, 1.0, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_LT((hardware.effort() - expected(q + v * kPeriod * one, v * one, 2.0 * one)).norm(),
+            kRounding);
+  for (int k = 0; k < 1000; ++k) EXPECT_EQ(update(), return_type::OK);
+  EXPECT_LT((hardware.effort() - expected(there, zero, zero)).norm(), kRounding);
+  EXPECT_TRUE(spinUntil([this] {
+    return log.has(
+        "WARN: the reference steps farther than the limits of velocity and "
+        "acceleration allow: ramped");
+  })) << log.text();
 }
 
 TEST_F(InverseDynamicsControllerTest, AMeasuredNanGivesTheSafeTorqueAndThenGivesUp) {

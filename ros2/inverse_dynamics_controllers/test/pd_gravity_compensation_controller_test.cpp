@@ -30,7 +30,7 @@ class PdGravityCompensationControllerTest : public ChainedFixture<PdGravityCompe
   const Eigen::VectorXd q = vec({0.3, -1.2, 0.9, -0.4, 0.7, 0.2});
   const Eigen::VectorXd qd = vec({0.1, -0.2, 0.3, 0.2, -0.1, 0.4});
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(6);
-  const Eigen::VectorXd q_ref = q + vec({0.02, -0.01, 0.03, 0.01, 0.02, -0.03});
+  const Eigen::VectorXd q_ref = q + vec({0.002, -0.001, 0.003, 0.001, 0.002, -0.003});
   const Eigen::VectorXd qd_ref = vec({0.2, -0.1, 0.1, 0.3, 0.2, 0.1});
 };
 
@@ -45,7 +45,9 @@ TEST_F(PdGravityCompensationControllerTest, CommandsGravityAndFeedback) {
 }
 
 TEST_F(PdGravityCompensationControllerTest, HoldsWhereItStartsUntilTheFirstReference) {
+  hardware.set(q, zero);
   ASSERT_TRUE(start(good())) << log.text();
+  hardware.set(q, qd);
   EXPECT_EQ(update(), return_type::OK);
   EXPECT_LT((hardware.effort() - expected(q, zero)).norm(), kRounding);
 }

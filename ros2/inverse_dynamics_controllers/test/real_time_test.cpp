@@ -27,7 +27,7 @@ void proveTheGuard() {
   ASSERT_GT(proof.count(), 0) << "the allocation guard doesn't see allocations";
 }
 
-// Allocations of cycles in all that may happen: following, saturated, stopping, failing.
+// Allocations of cycles in all that may happen: following, stepping, stopping, failing.
 template <class Fixture, class SetReference>
 long allocationsOf(Fixture& fixture, FakeHardware& hardware, const SetReference& setReference) {
   AllocationGuard guard;
@@ -37,7 +37,7 @@ long allocationsOf(Fixture& fixture, FakeHardware& hardware, const SetReference&
     });
   };
   cycles();
-  setReference(0.1);
+  setReference(1e-3);
   cycles();
   setReference(2.0);
   cycles();
@@ -82,6 +82,7 @@ TEST_F(FeedForwardCycle, AllocatesLocksAndThrowsNothing) {
       std::vector<std::string>{"position", "velocity", "acceleration", "effort"});
   parameters["gains.p"] = rclcpp::ParameterValue(std::vector<double>{1000.0});
   parameters["gains.d"] = rclcpp::ParameterValue(std::vector<double>{10.0});
+  parameters["reference_steps"] = rclcpp::ParameterValue("ramp");
   ASSERT_TRUE(start(parameters)) << log.text();
   EXPECT_EQ(allocationsOf(*this, hardware,
                           [this](double q) {

@@ -102,6 +102,38 @@ TEST_F(ReferenceTopicTest, AMessageIsFollowedUntilItIsStale) {
   })) << log.text();
 }
 
+class StampedReference : public ReferenceTopicTest, public ::testing::WithParamInterface<int> {};
+
+TEST_P(StampedReference, OfAnotherTimeIsReportedAndIgnored) {
+  update();
+  const Eigen::VectorXd holding = hardware.effort();
+  JointTrajectory message = moving();
+  message.header.stamp = sender_->now() - rclcpp::Duration(GetParam(), 0);
+  EXPECT_TRUE(spinUntil([&] {  // said once a second, whichever message it was
+    publisher_->publish(message);
+    return log.has("ERROR: ~/reference: ignored: header.stamp: expected now, or zero, got ");
+  })) << log.text();
+  update();
+  EXPECT_EQ(hardware.effort(), holding);
+}
+
+INSTANTIATE_TEST_SUITE_P(LateAndEarly, StampedReference, ::testing::Values(3600, -3600));
+
+TEST_F(ReferenceTopicTest, AStepOfOneMessageIsRefused) {
+  update();
+  const Eigen::VectorXd holding = hardware.effort();
+  JointTrajectory far = moving();
+  far.points[0].positions[0] = 3.0;
+  publisher_->publish(far);
+  EXPECT_TRUE(spinUntil([this] {
+    update();
+    return log.has(
+        "ERROR: the reference steps farther than the limits of velocity and acceleration allow "
+        "(shoulder_pan_joint): stopping");
+  })) << log.text();
+  EXPECT_EQ(hardware.effort(), holding);
+}
+
 TEST_F(ReferenceTopicTest, AMessageThatDoesNotFitIsReportedAndIgnored) {
   update();
   const Eigen::VectorXd holding = hardware.effort();
