@@ -115,6 +115,14 @@ double samplingPeriod(double stated, unsigned update_rate) {
       "leave it out");
 }
 
+// The spawner hands this parameter on to the manager.
+bool hasFallback(const rclcpp_lifecycle::LifecycleNode& node) {
+  rclcpp::Parameter fallback;
+  return node.get_parameter("fallback_controllers", fallback) &&
+         fallback.get_type() == rclcpp::PARAMETER_STRING_ARRAY &&
+         !fallback.as_string_array().empty();
+}
+
 FrictionSource frictionSource(const std::string& name) {
   if (name == "reference_velocity") return FrictionSource::kReferenceVelocity;
   if (name == "measured_velocity") return FrictionSource::kMeasuredVelocity;
@@ -167,7 +175,8 @@ Setup ArmSource::setup(const std::string& managers_description, unsigned update_
           law,
           {solver, joints, std::move(commands),
            inverse_dynamics_control::describedLimits(description, joints)},
-          samplingPeriod(parameters.period, update_rate)};
+          samplingPeriod(parameters.period, update_rate),
+          hasFallback(*node_)};
 }
 
 inverse_dynamics_control::Compensated compensatedByRobot(const Setup& setup) {

@@ -36,7 +36,8 @@ struct Setup {
   ArmParameters parameters;
   LawParameters law;  ///< the defaults where nothing is commanded
   Arm arm;
-  double period;  ///< of the control loop [s]
+  double period;      ///< of the control loop [s]
+  bool has_fallback;  ///< whether the manager starts other controllers when this one fails
 
   /// The parameter `ids.tip`; empty: not set.
   std::string tip() const;

@@ -36,6 +36,7 @@ class ControlLoop {
         state_(setup.arm.solver->jointCount()),
         tau_(Eigen::VectorXd::Zero(state_.q.size())),
         fault_(setup.parameters.tolerated_fault_time),
+        has_fallback_(setup.has_fallback),
         report_(std::make_shared<UpdateReport>(setup.arm.joints)),
         timer_(logEverySecond(setup.node, report_)),
         carried_(setup),
@@ -53,7 +54,7 @@ class ControlLoop {
   /// the hardware's for a cycle before the first update.
   ///
   /// Throws inverse_dynamics_solver::Exception: one is missing; the hardware doesn't know where its
-  /// joints are.
+  /// joints are; the solver doesn't give gravity there.
   void start(inverse_dynamics_control::ControlLaw& law, const StateInterfaces& states,
              CommandInterfaces& commands) {
     interfaces_.bind(states, commands);
@@ -67,14 +68,20 @@ class ControlLoop {
     }
     fault_.reset();
     law.start();
-    law.hold(state_, 0.0, tau_);
+    if (const auto status = law.hold(state_, 0.0, tau_); isRefusal(status)) {
+      throw inverse_dynamics_solver::Exception(
+          "activation", "no safe torque", "a solver that gives gravity at the measured position",
+          text(status), "see the solver's own messages");
+    }
     interfaces_.write(tau_, commands);
   }
 
-  /// One cycle. Real time: no allocation, lock, exception or system call.
+  /// One cycle; once a fault has lasted, of the law's safe torque. Real time: no allocation, lock,
+  /// exception or system call.
   ///
   /// @param update  (state, period [s], tau) -> Status; not called once a fault has lasted.
-  /// @return ERROR once a fault has lasted; the efforts are the law's safe torque then.
+  /// @return ERROR where a fallback controller can carry the arm instead, else OK: a manager
+  ///         deactivates the controller that returns ERROR, whose efforts become zero.
   template <class Law, class Update>
   controller_interface::return_type cycle(Law& law, const StateInterfaces& states,
                                           CommandInterfaces& commands,
@@ -91,7 +98,8 @@ class ControlLoop {
     fault_.note(status, dt);
     if (fault_.latched() && !was_latched) report_->noteGivenUp(fault_.why());
     report_->note(status, law.saturated(), law.rateLimited());
-    return fault_.latched() ? return_type::ERROR : return_type::OK;
+    const bool hands_over = fault_.latched() && has_fallback_ && !isRefusal(status);
+    return hands_over ? return_type::ERROR : return_type::OK;
   }
 
   /// Hands the last cycle's numbers to ~/controller_state. Real time: as cycle().
@@ -102,16 +110,8 @@ class ControlLoop {
     publisher_.note(time, state_, reference, tau_);
   }
 
-  /// Commands the law's safe torque when a controller fails, or is shut down while active.
-  void leave(inverse_dynamics_control::ControlLaw& law, const StateInterfaces& states,
-             CommandInterfaces& commands) noexcept {
-    if (states.empty() || commands.empty()) return;  // not active
-    interfaces_.read(states, state_);
-    law.hold(state_, 0.0, tau_);
-    interfaces_.write(tau_, commands);
-  }
-
-  /// Commands zero effort when a controller is deactivated.
+  /// Commands zero effort when a controller is deactivated: without feedback no other effort is
+  /// safe. A controller that is activated in the same switch overwrites it before the hardware acts.
   void stop(CommandInterfaces& commands) noexcept {
     tau_.setZero();
     interfaces_.write(tau_, commands);
@@ -122,6 +122,7 @@ class ControlLoop {
   inverse_dynamics_control::JointState state_;
   Eigen::VectorXd tau_;
   inverse_dynamics_control::FaultLatch fault_;
+  bool has_fallback_;
   std::shared_ptr<UpdateReport> report_;
   rclcpp::TimerBase::SharedPtr timer_;
   CarriedBody carried_;

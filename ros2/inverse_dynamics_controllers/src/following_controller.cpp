@@ -58,15 +58,6 @@ CallbackReturn FollowingController::on_cleanup(const rclcpp_lifecycle::State&) {
   return CallbackReturn::SUCCESS;
 }
 
-CallbackReturn FollowingController::on_error(const rclcpp_lifecycle::State&) {
-  if (follower_) follower_->loop().leave(follower_->law(), state_interfaces_, command_interfaces_);
-  return CallbackReturn::SUCCESS;
-}
-
-CallbackReturn FollowingController::on_shutdown(const rclcpp_lifecycle::State& state) {
-  return on_error(state);
-}
-
 std::vector<std::string> FollowingController::referenceNames() const {
   return follower_ ? follower_->input().layout().names() : std::vector<std::string>();
 }

@@ -66,17 +66,6 @@ CallbackReturn GravityCompensationController::on_cleanup(const rclcpp_lifecycle:
   return CallbackReturn::SUCCESS;
 }
 
-CallbackReturn GravityCompensationController::on_error(const rclcpp_lifecycle::State&) {
-  if (configured_) {
-    configured_->loop.leave(configured_->law, state_interfaces_, command_interfaces_);
-  }
-  return CallbackReturn::SUCCESS;
-}
-
-CallbackReturn GravityCompensationController::on_shutdown(const rclcpp_lifecycle::State& state) {
-  return on_error(state);
-}
-
 controller_interface::return_type GravityCompensationController::update(
     const rclcpp::Time& time, const rclcpp::Duration& period) {
   if (!configured_) return controller_interface::return_type::ERROR;

@@ -3,7 +3,6 @@
 
 #include <rclcpp/version.h>
 
-#include <algorithm>
 #include <chrono>
 
 #include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
@@ -163,18 +162,6 @@ TEST_F(GravityCompensationControllerTest, AsManyCommandsAsJoints) {
   EXPECT_FALSE(configure(parameters));
   EXPECT_TRUE(log.has("ERROR: parameter 'command_joints': wrong number of names: expected 6"))
       << log.text();
-}
-
-TEST_F(GravityCompensationControllerTest, AnErrorAndAShutdownLeaveTheSafeTorque) {
-  ASSERT_TRUE(configure(good()) && activate()) << log.text();
-  const Eigen::VectorXd safe = solver()->getGravityVector(q) - 4.0 * qd;
-  for (const auto end :
-       {&GravityCompensationController::on_error, &GravityCompensationController::on_shutdown}) {
-    std::fill(hardware.tau.begin(), hardware.tau.end(), 0.0);
-    EXPECT_EQ((controller.*end)(rclcpp_lifecycle::State()),
-              controller_interface::CallbackReturn::SUCCESS);
-    EXPECT_LT((hardware.effort() - safe).norm(), kRounding);
-  }
 }
 
 }  // namespace

@@ -41,8 +41,6 @@ class FollowingController : public ChainableController {
   controller_interface::CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override;
   controller_interface::CallbackReturn on_deactivate(const rclcpp_lifecycle::State& state) override;
   controller_interface::CallbackReturn on_cleanup(const rclcpp_lifecycle::State& state) override;
-  controller_interface::CallbackReturn on_error(const rclcpp_lifecycle::State& state) override;
-  controller_interface::CallbackReturn on_shutdown(const rclcpp_lifecycle::State& state) override;
 
  protected:
   /// Makes law and references when configured. An exception fails that transition.

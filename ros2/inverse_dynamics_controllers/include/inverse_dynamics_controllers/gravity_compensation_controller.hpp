@@ -39,8 +39,6 @@ class GravityCompensationController : public Strict<controller_interface::Contro
   controller_interface::CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override;
   controller_interface::CallbackReturn on_deactivate(const rclcpp_lifecycle::State& state) override;
   controller_interface::CallbackReturn on_cleanup(const rclcpp_lifecycle::State& state) override;
-  controller_interface::CallbackReturn on_error(const rclcpp_lifecycle::State& state) override;
-  controller_interface::CallbackReturn on_shutdown(const rclcpp_lifecycle::State& state) override;
 
  private:
   struct Configured;
