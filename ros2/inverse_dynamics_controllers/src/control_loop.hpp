@@ -10,6 +10,7 @@
 ///                       });
 #pragma once
 
+#include <chain_dynamics/text.hpp>
 #include <cmath>
 #include <cstddef>
 #include <exception>
@@ -23,6 +24,7 @@
 #include "arm_interfaces.hpp"
 #include "carried_body.hpp"
 #include "changing_damping.hpp"
+#include "hand_over.hpp"
 #include "state_publisher.hpp"
 #include "update_report.hpp"
 
@@ -37,6 +39,9 @@ class ControlLoop {
         tau_(Eigen::VectorXd::Zero(state_.q.size())),
         fault_(setup.parameters.tolerated_fault_time),
         has_fallback_(setup.has_fallback),
+        hand_over_(
+            HandOver::of(setup.node->get_namespace() + chain_dynamics::joined(setup.arm.commands),
+                         state_.q.size())),
         report_(std::make_shared<UpdateReport>(setup.arm.joints)),
         timer_(logEverySecond(setup.node, report_)),
         carried_(setup),
@@ -50,8 +55,9 @@ class ControlLoop {
   /// The measured state of the last cycle, or of start().
   const inverse_dynamics_control::JointState& state() const noexcept { return state_; }
 
-  /// Finds the interfaces, and restarts, with the law's safe torque: what is written now may be
-  /// the hardware's for a cycle before the first update.
+  /// Finds the interfaces, and restarts, with the law's safe torque, within the rate limit of what
+  /// another controller has commanded: what is written now may be the hardware's for a cycle before
+  /// the first update.
   ///
   /// Throws inverse_dynamics_solver::Exception: one is missing; the hardware doesn't know where its
   /// joints are; the solver doesn't give gravity there.
@@ -67,7 +73,8 @@ class ControlLoop {
           "see that the hardware component is active, and activate the controller again");
     }
     fault_.reset();
-    law.start();
+    const Eigen::VectorXd* const before = hand_over_->take(state_);
+    before == nullptr ? law.start() : law.start(*before);
     if (const auto status = law.hold(state_, 0.0, tau_); isRefusal(status)) {
       throw inverse_dynamics_solver::Exception(
           "activation", "no safe torque", "a solver that gives gravity at the measured position",
@@ -112,7 +119,9 @@ class ControlLoop {
 
   /// Commands zero effort when a controller is deactivated: without feedback no other effort is
   /// safe. A controller that is activated in the same switch overwrites it before the hardware acts.
-  void stop(CommandInterfaces& commands) noexcept {
+  void stop(const StateInterfaces& states, CommandInterfaces& commands) noexcept {
+    interfaces_.read(states, state_);
+    hand_over_->leave(state_, tau_);
     tau_.setZero();
     interfaces_.write(tau_, commands);
   }
@@ -123,6 +132,7 @@ class ControlLoop {
   Eigen::VectorXd tau_;
   inverse_dynamics_control::FaultLatch fault_;
   bool has_fallback_;
+  std::shared_ptr<HandOver> hand_over_;
   std::shared_ptr<UpdateReport> report_;
   rclcpp::TimerBase::SharedPtr timer_;
   CarriedBody carried_;

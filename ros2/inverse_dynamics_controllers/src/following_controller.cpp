@@ -49,7 +49,7 @@ CallbackReturn FollowingController::on_activate(const rclcpp_lifecycle::State&) 
 }
 
 CallbackReturn FollowingController::on_deactivate(const rclcpp_lifecycle::State&) {
-  if (follower_) follower_->loop().stop(command_interfaces_);
+  if (follower_) follower_->loop().stop(state_interfaces_, command_interfaces_);
   return CallbackReturn::SUCCESS;
 }
 

@@ -57,7 +57,7 @@ CallbackReturn GravityCompensationController::on_activate(const rclcpp_lifecycle
 }
 
 CallbackReturn GravityCompensationController::on_deactivate(const rclcpp_lifecycle::State&) {
-  if (configured_) configured_->loop.stop(command_interfaces_);
+  if (configured_) configured_->loop.stop(state_interfaces_, command_interfaces_);
   return CallbackReturn::SUCCESS;
 }
 

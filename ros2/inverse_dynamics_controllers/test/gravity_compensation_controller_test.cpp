@@ -34,6 +34,30 @@ TEST_F(GravityCompensationControllerTest, ActivationAlreadyCarriesTheArm) {
   EXPECT_LT((hardware.effort() - expected).norm(), kRounding);
 }
 
+TEST_F(GravityCompensationControllerTest, TakesOverWithinTheRateLimit) {
+  Parameters parameters = good();
+  parameters["limits.effort_rate"] = rclcpp::ParameterValue(std::vector<double>{1000.0});
+  ASSERT_TRUE(configure(parameters) && activate()) << log.text();
+  const Eigen::VectorXd first = hardware.effort();
+  // At once at another state, within the rate at the same one.
+  const auto restarted = [this](const Eigen::VectorXd& position) {
+    controller.get_node()->deactivate();
+    EXPECT_EQ(hardware.effort(), Eigen::VectorXd::Zero(6));
+    hardware.set(position, qd);
+    EXPECT_TRUE(activate()) << log.text();
+    return hardware.effort();
+  };
+  const Eigen::VectorXd other = q + Eigen::VectorXd::Constant(6, 0.5);
+  const Eigen::VectorXd there = restarted(other);
+  EXPECT_LT((there - solver()->getGravityVector(other) + 4.0 * qd).norm(), kRounding);
+  hardware.set(q, qd);
+  EXPECT_EQ(update(), return_type::OK);
+  const Eigen::VectorXd last = hardware.effort();
+  EXPECT_NEAR((last - there).cwiseAbs().maxCoeff(), 1.0, kRounding);
+  EXPECT_EQ(restarted(q), last);
+  EXPECT_NE(last, first);
+}
+
 TEST_F(GravityCompensationControllerTest, TakesASolverWhoseInertiaIsNotPhysical) {
   Parameters parameters = good();
   parameters["plugin_name"] = rclcpp::ParameterValue(kUr10);
