@@ -38,6 +38,9 @@ CONTROLLERS = {
 # Spawned before each of them.
 BROADCASTERS = ["joint_state_broadcaster", "external_wrench_broadcaster"]
 
+# Takes over from the others: they are activated only once it is configured.
+FALLBACK = "gravity_compensation_controller"
+
 
 def generate_launch_description():
     """Arguments and processes, as `ros2 launch` asks for them."""
@@ -73,18 +76,9 @@ def _processes(context):
             f"argument config: expected a parameter file, got '{config}': no such file"
         )
     description = _simulated(robot, own, number(context, "payload"))
-    spawner = Node(
-        package="controller_manager",
-        executable="spawner",
-        arguments=[
-            *BROADCASTERS,
-            *CONTROLLERS[text(context, "controller")],
-            "--param-file",
-            config,
-            "--controller-manager-timeout",
-            "60",
-        ],
-    )
+    controllers = CONTROLLERS[text(context, "controller")]
+    spawner = _spawner(config, *BROADCASTERS, *controllers)
+    first = spawner if FALLBACK in controllers else _spawner(config, "--inactive", FALLBACK)
     actions = [
         Node(
             package="robot_state_publisher",
@@ -103,8 +97,11 @@ def _processes(context):
             remappings=[("~/robot_description", "/robot_description")],
             output="both",
         ),
-        spawner,
+        first,
     ]
+    if first is not spawner:
+        start = OnProcessExit(target_action=first, on_exit=[spawner])
+        actions.append(RegisterEventHandler(start))
     if bag:
         # From when the controllers carry the arm: what its brakes give isn't measured.
         record = ["ros2", "bag", "record", "--use-sim-time", "-o", bag, "/joint_states"]
@@ -112,6 +109,14 @@ def _processes(context):
         start = OnProcessExit(target_action=spawner, on_exit=[recording])
         actions.append(RegisterEventHandler(start))
     return actions
+
+
+def _spawner(config, *arguments):
+    return Node(
+        package="controller_manager",
+        executable="spawner",
+        arguments=[*arguments, "--param-file", config, "--controller-manager-timeout", "60"],
+    )
 
 
 def _simulated(robot, config, payload):
