@@ -24,6 +24,11 @@ ControlLaw::ControlLaw(std::shared_ptr<const InverseDynamicsSolver> solver,
   }
 }
 
+void ControlLaw::start(const ConstVectorRef& effort, const ConstVectorRef& gravity) noexcept {
+  start(effort);
+  if (check(gravity) == Status::kOk) gravity_ = gravity;
+}
+
 Status ControlLaw::hold(const JointState& state, double period, VectorRef tau) noexcept {
   return refuse(check(state, tau), state, period, tau);
 }

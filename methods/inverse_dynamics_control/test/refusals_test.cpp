@@ -189,6 +189,18 @@ TEST(Refusals, HoldIsTheSafeTorqueOnDemand) {
   }
 }
 
+TEST(Refusals, ALawTakesOverWithoutAPosition) {
+  Laws laws;
+  Eigen::VectorXd tau(1);
+  ControlLaw& law = laws.gravity_compensation;
+  EXPECT_EQ(laws.computed_torque.hold(stateOf(vec({0.2}), vec({0.5})), kPeriod, tau), Status::kOk);
+  law.start(tau, laws.computed_torque.gravity());
+  EXPECT_EQ(law.hold(stateOf(vec({kNan}), vec({0.5})), kPeriod, tau), Status::kStateNotFinite);
+  EXPECT_NEAR(tau[0], gravityAt(0.2) - kDamping * 0.5, kRounding);
+  EXPECT_EQ(law.hold(stateOf(vec({0.7}), vec({0.5})), kPeriod, tau), Status::kOk);
+  EXPECT_NEAR(tau[0], gravityAt(0.7) - kDamping * 0.5, kRounding);
+}
+
 TEST(Refusals, ALostJointLeavesTheOthersDamped) {
   const auto solver = ChainSolver::make(twoBars());
   GravityCompensation law(solver, unlimited(2));

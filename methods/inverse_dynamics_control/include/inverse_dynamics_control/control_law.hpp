@@ -13,10 +13,10 @@
 ///     tau = g(q) - damping qd
 ///
 /// which carries the arm and brakes it, but holds no position. Gravity is that of the measured
-/// position; without one (a NaN, a solver that fails) that of the last cycle which had one, zero
-/// before the first. Joints without a finite velocity aren't damped. So a reference that is lost for good ends in
-/// an arm that stands and can be pushed, and a position that is lost for good needs brakes: see the
-/// status.
+/// position; without one (a NaN, a solver that fails) that of the last cycle which had one, before
+/// the first that of start(), or zero. Joints without a finite velocity aren't damped. So a
+/// reference that is lost for good ends in an arm that stands and can be pushed, and a position that
+/// is lost for good needs brakes: see the status.
 #pragma once
 
 #include <memory>
@@ -63,6 +63,15 @@ class ControlLaw {
   void start() noexcept { output_.start(); }
   /// @copydoc start()
   void start(const ConstVectorRef& effort) noexcept { output_.start(effort); }
+
+  /// The same where a law takes over from another one.
+  ///
+  /// @param gravity  n, finite; N m: gravity() of the other one, for the safe torque until a position
+  ///                 is valid. Another size, or NaN: as start(effort).
+  void start(const ConstVectorRef& effort, const ConstVectorRef& gravity) noexcept;
+
+  /// Gravity of the safe torque, n: that of the last valid position; N m (prismatic N).
+  const OwnedVector& gravity() const noexcept { return gravity_; }
 
   /// The safe torque instead of the law's: `tau = g(q) - damping qd`, within the limits.
   ///
