@@ -3,7 +3,7 @@
 /// A cycle of any controller: read the joints, ask the law, write efforts, note what happened.
 ///
 ///     ControlLoop loop(setup);
-///     loop.start(law, state_interfaces_, command_interfaces_);        // when activated
+///     loop.start(law, state_interfaces_, command_interfaces_, false);  // when activated
 ///     return loop.cycle(law, state_interfaces_, command_interfaces_, period,
 ///                       [&](const JointState& state, double dt, Eigen::VectorXd& tau) {
 ///                         return law.update(state, dt, tau);
@@ -55,17 +55,19 @@ class ControlLoop {
   /// The measured state of the last cycle, or of start().
   const inverse_dynamics_control::JointState& state() const noexcept { return state_; }
 
-  /// Finds the interfaces, and restarts, with the law's safe torque, within the rate limit of what
-  /// another controller has commanded: what is written now may be the hardware's for a cycle before
+  /// Finds the interfaces, and restarts, with the efforts of the controller that it takes over from,
+  /// else with the law's safe torque: what is written now may be the hardware's for a cycle before
   /// the first update.
   ///
+  /// @param carries_on  whether it takes over without a measured state, too.
   /// Throws inverse_dynamics_solver::Exception: one is missing; the hardware doesn't know where its
   /// joints are; the solver doesn't give gravity there.
   void start(inverse_dynamics_control::ControlLaw& law, const StateInterfaces& states,
-             CommandInterfaces& commands) {
+             CommandInterfaces& commands, bool carries_on) {
     interfaces_.bind(states, commands);
     interfaces_.read(states, state_);
-    for (Eigen::Index j = 0; j < state_.q.size(); ++j) {
+    const bool takes_over = hand_over_->start(state_, law, tau_);
+    for (Eigen::Index j = 0; !(takes_over && carries_on) && j < state_.q.size(); ++j) {
       if (std::isfinite(state_.q[j]) && std::isfinite(state_.qd[j])) continue;
       throw inverse_dynamics_solver::Exception(
           "joint " + interfaces_.joints()[static_cast<std::size_t>(j)], "no measured state",
@@ -73,9 +75,9 @@ class ControlLoop {
           "see that the hardware component is active, and activate the controller again");
     }
     fault_.reset();
-    const Eigen::VectorXd* const before = hand_over_->take(state_);
-    before == nullptr ? law.start() : law.start(*before);
-    if (const auto status = law.hold(state_, 0.0, tau_); isRefusal(status)) {
+    const auto status =
+        takes_over ? inverse_dynamics_control::Status::kOk : law.hold(state_, 0.0, tau_);
+    if (isRefusal(status)) {
       throw inverse_dynamics_solver::Exception(
           "activation", "no safe torque", "a solver that gives gravity at the measured position",
           text(status), "see the solver's own messages");
@@ -87,8 +89,8 @@ class ControlLoop {
   /// exception or system call.
   ///
   /// @param update  (state, period [s], tau) -> Status; not called once a fault has lasted.
-  /// @return ERROR where a fallback controller can carry the arm instead, else OK: a manager
-  ///         deactivates the controller that returns ERROR, whose efforts become zero.
+  /// @return ERROR once a fault has lasted, so that the manager activates fallback controllers; OK
+  ///         without any, as it would leave the arm without effort.
   template <class Law, class Update>
   controller_interface::return_type cycle(Law& law, const StateInterfaces& states,
                                           CommandInterfaces& commands,
@@ -105,8 +107,7 @@ class ControlLoop {
     fault_.note(status, dt);
     if (fault_.latched() && !was_latched) report_->noteGivenUp(fault_.why());
     report_->note(status, law.saturated(), law.rateLimited());
-    const bool hands_over = fault_.latched() && has_fallback_ && !isRefusal(status);
-    return hands_over ? return_type::ERROR : return_type::OK;
+    return fault_.latched() && has_fallback_ ? return_type::ERROR : return_type::OK;
   }
 
   /// Hands the last cycle's numbers to ~/controller_state. Real time: as cycle().
@@ -119,9 +120,10 @@ class ControlLoop {
 
   /// Commands zero effort when a controller is deactivated: without feedback no other effort is
   /// safe. A controller that is activated in the same switch overwrites it before the hardware acts.
-  void stop(const StateInterfaces& states, CommandInterfaces& commands) noexcept {
+  void stop(const inverse_dynamics_control::ControlLaw& law, const StateInterfaces& states,
+            CommandInterfaces& commands) noexcept {
     interfaces_.read(states, state_);
-    hand_over_->leave(state_, tau_);
+    hand_over_->leave(state_, tau_, law.gravity());
     tau_.setZero();
     interfaces_.write(tau_, commands);
   }

@@ -42,14 +42,14 @@ CallbackReturn FollowingController::on_configure(const rclcpp_lifecycle::State&)
 CallbackReturn FollowingController::on_activate(const rclcpp_lifecycle::State&) {
   return transition(get_node()->get_logger(), [this] {
     requireConfigured(follower_ != nullptr);
-    follower_->loop().start(follower_->law(), state_interfaces_, command_interfaces_);
+    follower_->loop().start(follower_->law(), state_interfaces_, command_interfaces_, false);
     forgetReferences();
     follower_->input().start(follower_->loop().state(), references_);
   });
 }
 
 CallbackReturn FollowingController::on_deactivate(const rclcpp_lifecycle::State&) {
-  if (follower_) follower_->loop().stop(state_interfaces_, command_interfaces_);
+  if (follower_) follower_->loop().stop(follower_->law(), state_interfaces_, command_interfaces_);
   return CallbackReturn::SUCCESS;
 }
 

@@ -52,12 +52,12 @@ CallbackReturn GravityCompensationController::on_configure(const rclcpp_lifecycl
 CallbackReturn GravityCompensationController::on_activate(const rclcpp_lifecycle::State&) {
   return transition(get_node()->get_logger(), [this] {
     requireConfigured(configured_ != nullptr);
-    configured_->loop.start(configured_->law, state_interfaces_, command_interfaces_);
+    configured_->loop.start(configured_->law, state_interfaces_, command_interfaces_, true);
   });
 }
 
 CallbackReturn GravityCompensationController::on_deactivate(const rclcpp_lifecycle::State&) {
-  if (configured_) configured_->loop.stop(state_interfaces_, command_interfaces_);
+  if (configured_) configured_->loop.stop(configured_->law, state_interfaces_, command_interfaces_);
   return CallbackReturn::SUCCESS;
 }
 

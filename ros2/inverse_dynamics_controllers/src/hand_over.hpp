@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What a controller commanded last, for the one that takes over from it: its limits.effort_rate
-/// goes on from there.
+/// What a controller commanded last, and the gravity that it knew, for the one that takes over.
 #pragma once
 
 #include <Eigen/Core>
-#include <inverse_dynamics_control/signals.hpp>
+#include <chrono>
+#include <inverse_dynamics_control/control_law.hpp>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <utility>
 
 namespace inverse_dynamics_controllers {
 
 /// The last efforts of a robot, shared by its controllers, which a manager switches in one thread.
 class HandOver {
  public:
-  explicit HandOver(Eigen::Index joints) : state_(joints), tau_(Eigen::VectorXd::Zero(joints)) {}
+  explicit HandOver(Eigen::Index joints)
+      : state_(joints), tau_(Eigen::VectorXd::Zero(joints)), gravity_(tau_) {}
 
   /// @param robot  the same text for controllers that command the same joints in the same order.
   static std::shared_ptr<HandOver> of(const std::string& robot, Eigen::Index joints) {
@@ -29,25 +29,45 @@ class HandOver {
     return found;
   }
 
-  /// A controller ends. Real time, as take(): no allocation, lock, exception or system call.
-  void leave(const inverse_dynamics_control::JointState& state,
-             const Eigen::VectorXd& tau) noexcept {
+  /// A controller ends. Real time, as start(): no allocation, lock, exception or system call.
+  void leave(const inverse_dynamics_control::JointState& state, const Eigen::VectorXd& tau,
+             const Eigen::VectorXd& gravity) noexcept {
     state_ = state;
     tau_ = tau;
-    left_ = true;
+    gravity_ = gravity;
+    left_at_ = Clock::now();
   }
 
-  /// What the controller before has left at this measured state, in the same cycle; null: nothing,
-  /// or at another one, from which the robot has been moved since.
-  const Eigen::VectorXd* take(const inverse_dynamics_control::JointState& state) noexcept {
-    const bool same = state.q == state_.q && state.qd == state_.qd;
-    return std::exchange(left_, false) && same ? &tau_ : nullptr;
+  /// Starts the law of the next one: from these efforts where another one has ended at this measured
+  /// state, in the same cycle; not where the robot may have been moved since.
+  ///
+  /// @param[out] tau  the efforts, where it takes over.
+  /// @return whether it takes over.
+  bool start(const inverse_dynamics_control::JointState& state,
+             inverse_dynamics_control::ControlLaw& law, Eigen::VectorXd& tau) const noexcept {
+    const bool takes_over = Clock::now() - left_at_ < kLongestCycle && areSame(state.q, state_.q) &&
+                            areSame(state.qd, state_.qd);
+    if (!takes_over) {
+      law.start();
+      return false;
+    }
+    law.start(tau_, gravity_);
+    tau = tau_;
+    return true;
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kLongestCycle{1};
+
+  // What is lost in both is the same.
+  static bool areSame(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept {
+    return (a.array() == b.array() || (a.array().isNaN() && b.array().isNaN())).all();
+  }
+
   inverse_dynamics_control::JointState state_;
-  Eigen::VectorXd tau_;
-  bool left_ = false;
+  Eigen::VectorXd tau_, gravity_;
+  Clock::time_point left_at_{};  // the start of the computer
 };
 
 }  // namespace inverse_dynamics_controllers

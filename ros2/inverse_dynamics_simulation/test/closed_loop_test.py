@@ -22,6 +22,7 @@ from control_msgs.msg import JointTrajectoryControllerState
 from geometry_msgs.msg import WrenchStamped
 from launch.actions import IncludeLaunchDescription
 from launch.launch_description_sources import PythonLaunchDescriptionSource
+from rclpy.parameter_client import AsyncParameterClient
 from sensor_msgs.msg import JointState
 
 AMPLITUDES = {
@@ -182,6 +183,14 @@ class TestFollowing(unittest.TestCase):
             assert sum(a != b for a, b in itertools.pairwise(directions)) <= 1
         assert max(map(abs, self.joint_states[-1].velocity)) < REST
 
+    def assert_has_fallback(self, controller):
+        """The manager knows it from the controller's section of the parameter file."""
+        client = AsyncParameterClient(self.node, "controller_manager")
+        asked = client.get_parameters([f"{controller}.fallback_controllers"])
+        assert self.spin_until(asked.done)
+        (value,) = asked.result().values
+        assert value.string_array_value == ["gravity_compensation_controller"]
+
     def test_errors_stay_small(self, proc_output, robot, controller, payload):
         # Of the controller itself: a joint_trajectory_controller's are of other moments.
         states, wrenches, self.joint_states = [], [], []
@@ -191,6 +200,7 @@ class TestFollowing(unittest.TestCase):
         self.node.create_subscription(WrenchStamped, topic, wrenches.append, 100)
         self.node.create_subscription(JointState, "/joint_states", self.joint_states.append, 100)
         assert self.spin_until(lambda: states), "the controller publishes no state"
+        self.assert_has_fallback(f"{controller}_controller")
 
         # It moved, it followed, it came to rest, and nothing was cut.
         amplitudes = AMPLITUDES[robot]

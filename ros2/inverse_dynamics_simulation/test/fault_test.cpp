@@ -224,8 +224,9 @@ class Faults : public testing::TestWithParam<Robot> {
 
   return_type change(const std::vector<std::string>& start, const std::vector<std::string>& stop) {
     auto done = std::async(std::launch::async, [&] {
+      // As soon as possible: else the controllers wait for as many cycles as the thread takes.
       return manager_->switch_controller(
-          start, stop, controller_manager_msgs::srv::SwitchController::Request::STRICT);
+          start, stop, controller_manager_msgs::srv::SwitchController::Request::STRICT, true);
     });
     while (done.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) cycle();
     return done.get();
@@ -322,13 +323,13 @@ TEST_P(Faults, NanOfAJointForAShortTime) {
 TEST_P(Faults, StateOfAJointLostForGood) {
   bench_->lost_joints = 1;
   expectGreatest("state of a joint lost", 60.0);
-  EXPECT_TRUE(isActive(kFollower));
+  EXPECT_TRUE(isActive(kFallback));
 }
 
 TEST_P(Faults, StateOfAllJointsLostForGood) {
   bench_->lost_joints = bench_->q.size();
   expectGreatest("state of all joints lost", 300.0);
-  EXPECT_TRUE(isActive(kFollower));
+  EXPECT_TRUE(isActive(kFallback));
 }
 
 TEST_P(Faults, ReferenceThatJumps) {
@@ -340,6 +341,13 @@ TEST_P(Faults, ReferenceThatJumps) {
 TEST_P(Faults, ControllerBeforeThatFails) {
   leader_->fails = true;
   expectGreatest("preceding controller that fails", 60.0);
+  EXPECT_TRUE(isActive(kFallback));
+}
+
+TEST_P(Faults, ControllerBeforeThatFailsWhileAJointIsLost) {
+  bench_->lost_joints = 1;
+  leader_->fails = true;
+  expectGreatest("preceding controller that fails without a joint's state", 60.0);
   EXPECT_TRUE(isActive(kFallback));
 }
 
