@@ -4,6 +4,8 @@
 /// parameters of config/. The arms have no brakes: the efforts that are commanded last act on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <controller_interface/controller_interface.hpp>
 #include <controller_manager/controller_manager.hpp>
@@ -14,12 +16,14 @@
 #include <hardware_interface/system_interface.hpp>
 #include <hardware_interface/types/lifecycle_state_names.hpp>
 #include <inverse_dynamics_solver/installed_package.hpp>
+#include <iostream>
 #include <lifecycle_msgs/msg/state.hpp>
 #include <limits>
 #include <memory>
 #include <rclcpp/parameter_map.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mujoco_arm.hpp"
@@ -42,21 +46,20 @@ struct Robot {
     return out << robot.name;
   }
 
-  std::string name, tip;
+  std::string name;
   std::vector<std::string> joints;
   std::vector<double> q;  // rad
 };
 
 Robot ur10() {
   return {"ur10",
-          "tool0",
           {"shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint",
            "wrist_2_joint", "wrist_3_joint"},
           {0.0, -1.6, 1.2, -1.0, -1.5, 0.3}};
 }
 
 Robot panda() {
-  Robot robot{"panda", "fer_link8", {}, {0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8}};
+  Robot robot{"panda", {}, {0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8}};
   for (int j = 1; j <= 7; ++j) robot.joints.push_back("fer_joint" + std::to_string(j));
   return robot;
 }
@@ -99,7 +102,8 @@ struct Bench {
   MujocoArm arm;
   std::vector<double> q, qd, tau;
   std::size_t lost_joints = 0;  // how many are told as NaN
-  double greatest = 0.0;        // rad/s^2, of any joint
+  bool fails = false;
+  double greatest = 0.0;  // rad/s^2, of any joint
 };
 
 class BenchHardware : public hardware_interface::SystemInterface {
@@ -127,7 +131,8 @@ class BenchHardware : public hardware_interface::SystemInterface {
 
   hardware_interface::return_type read(const rclcpp::Time&, const rclcpp::Duration&) override {
     bench_->read();
-    return hardware_interface::return_type::OK;
+    return bench_->fails ? hardware_interface::return_type::ERROR
+                         : hardware_interface::return_type::OK;
   }
   hardware_interface::return_type write(const rclcpp::Time&, const rclcpp::Duration&) override {
     bench_->step();
@@ -368,6 +373,14 @@ TEST_P(Faults, DeactivationLeavesNoEffort) {
   EXPECT_EQ(bench_->tau, std::vector<double>(bench_->tau.size(), 0.0));
   expectGreatest("deactivation", 1e3);
   EXPECT_GT(bench_->greatest, 100.0);
+}
+
+TEST_P(Faults, AnErrorOfTheHardwareLeavesNoEffort) {
+  bench_->fails = true;
+  cycle();
+  EXPECT_FALSE(isActive(kFollower));
+  EXPECT_FALSE(isActive(kFallback));
+  EXPECT_EQ(bench_->tau, std::vector<double>(bench_->tau.size(), 0.0));
 }
 
 INSTANTIATE_TEST_SUITE_P(Arms, Faults, testing::Values(ur10(), panda()),
