@@ -491,8 +491,8 @@ def _notes(found: Fit, evaluation: Evaluation, idle: Floats, solver: Solver) -> 
         )
     if "payload.mass" in evaluation.robot.parameters:
         notes.append(
-            "the load comes on top of the `payload` of the run configuration, which `--payload` would "
-            "replace: give that one a name, as `payload: {tool: {mass: ...}}`"
+            "the load comes on top of the `payload` of the run configuration, which another one without a name "
+            "would replace: give that one a name, as `payload: {tool: {mass: ...}}`"
         )
     if not found.estimate.inertia_is_known:
         notes.append(
