@@ -122,7 +122,7 @@ def test_simulate_excite_and_torques(found, ids, tmp_path, monkeypatch):
     )
     assert code == 0
     document = json.loads(out)
-    assert document["written"] == ["two.yaml", "two_joint_trajectory.yaml"]
+    assert document["written"] == ["two.yaml", "two.npz", "two_joint_trajectory.yaml"]
     assert set(document["result"]) == set(re.findall(r"`(\w+)`", DOCUMENTED["excite`"]))
     assert document["result"]["joints"][0]["deviation"]["motion"] > 0
 

@@ -26,7 +26,7 @@ def test_the_panda_is_identified_by_the_command(identified, recordings, tmp_path
     mean = next(line for line in out.splitlines() if line.strip().startswith("mean")).split()
     urdf, present, refitted, fitted = map(float, mean[3:7])
     assert fitted < min(0.285, refitted) < present < urdf
-    names = {"arm.yaml", "arm_model.yaml", "arm_model.json", "arm.json", "arm.html"}
+    names = {"arm.yaml", "arm_model.yaml", "arm_model.json", "arm.json", "arm.html", "arm.npz"}
     names |= {"arm.urdf", "arm.xml"}
     assert {path.name for path in tmp_path.iterdir()} == names
     result = evaluate(bag, tmp_path / "arm.yaml")
