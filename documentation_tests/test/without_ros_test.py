@@ -27,6 +27,7 @@ OF_WORKSPACES = {
     "inverse_dynamics_benchmarks",
     "inverse_dynamics_controllers",
     "inverse_dynamics_documentation_tests",
+    "inverse_dynamics_moveit",
     "inverse_dynamics_msgs",
     "inverse_dynamics_ros",
     "inverse_dynamics_simulation",

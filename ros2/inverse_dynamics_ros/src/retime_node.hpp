@@ -8,6 +8,7 @@
 
 #include <exception>
 #include <inverse_dynamics_msgs/srv/retime.hpp>
+#include <inverse_dynamics_ros/retiming.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <optional>
 #include <rclcpp/rclcpp.hpp>
@@ -15,7 +16,6 @@
 #include <utility>
 #include <vector>
 
-#include "retiming.hpp"
 #include "robot_parameters.hpp"
 #include "user_error.hpp"
 
@@ -27,8 +27,7 @@ class RetimeNode : public rclcpp::Node {
 
   explicit RetimeNode(const rclcpp::NodeOptions& options)
       : rclcpp::Node("retime", options),
-        listener_((declareRobotParameters(*this), get_node_parameters_interface()), get_logger()),
-        retiming_(make(NodeRobot(givenParameters(*this)))) {
+        retiming_((declareRobotParameters(*this), Retiming::ofNode(*this))) {
     inverse_dynamics_solver::rejectUndeclared(*get_node_parameters_interface());
     service_ = create_service<Retime>(
         // NOLINTNEXTLINE(performance-unnecessary-value-param): the type that rclcpp asks for
@@ -38,10 +37,6 @@ class RetimeNode : public rclcpp::Node {
   }
 
  private:
-  Retiming make(const NodeRobot& robot) const {
-    return Retiming(robot, robot.description(), listener_.get_params());
-  }
-
   void answer(const Retime::Request& request, Retime::Response& response) {
     response.ignored = ignored(request.path);
     try {
@@ -99,7 +94,6 @@ class RetimeNode : public rclcpp::Node {
     return names;
   }
 
-  retime::ParamListener listener_;
   Retiming retiming_;
   rclcpp::Service<Retime>::SharedPtr service_;
 };

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "retiming.hpp"
+#include "inverse_dynamics_ros/retiming.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <inverse_dynamics_control/joint_parameters.hpp>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
+#include <inverse_dynamics_ros/retime_parameters.hpp>
+#include <inverse_dynamics_ros/robot_parameters.hpp>
 #include <rclcpp/duration.hpp>
 
+#include "robot_parameters.hpp"
 #include "user_error.hpp"
 
 namespace inverse_dynamics_ros {
@@ -27,6 +30,15 @@ void copy(const VectorXd& from, std::vector<double>& to) { to.assign(from.begin(
 
 }  // namespace
 
+Retiming Retiming::ofNode(rclcpp::Node& node, const std::string& prefix) {
+  const robot_parameters::ParamListener of_robot(&node, prefix);
+  const retime::ParamListener of_paths(&node, prefix);
+  const NodeRobot robot(givenParameters(node, prefix));
+  std::string description = robot.description();
+  if (description.empty()) node.get_parameter("robot_description", description);
+  return Retiming(robot, description, of_paths.get_params());
+}
+
 Retiming::Retiming(const NodeRobot& robot, const std::string& description,
                    const retime::Params& params)
     : solver_(robot.makeSolver(description)),
@@ -34,18 +46,20 @@ Retiming::Retiming(const NodeRobot& robot, const std::string& description,
       tip_(robot.tipLink(description)),
       joints_(
           inverse_dynamics_evaluation::recordedNames(robot.configuration(), solver_->jointNames())),
-      params_(params) {
-  describeLimits(description);
+      deviation_(params.deviation),
+      rate_(params.rate),
+      margin_(params.margin) {
+  describeLimits(description, params);
 }
 
-void Retiming::describeLimits(const std::string& description) {
+void Retiming::describeLimits(const std::string& description, const retime::Params& params) {
   const auto described =
       inverse_dynamics_control::describedLimits(description, solver_->jointNames());
   const auto chosen = [this](const std::string& name, const std::vector<double>& given,
                              const chain_dynamics::OwnedVector& otherwise) {
     return inverse_dynamics_control::jointNumbers("limits." + name, given, joints_, otherwise);
   };
-  limits_.torque = chosen("torque", params_.limits.torque, described.effort);
+  limits_.torque = chosen("torque", params.limits.torque, described.effort);
   if (!limits_.torque.allFinite()) {
     throw UserError("parameter 'limits.torque'",
                     "limits of torque [N m], here or in the robot description",
@@ -57,10 +71,10 @@ void Retiming::describeLimits(const std::string& description) {
   };
   const auto& [lower, upper, velocity, acceleration, deceleration] = described.reference;
   lower_ = lower, upper_ = upper;
-  limits_.velocity = chosen("velocity", params_.limits.velocity, velocity).cwiseMin(1e6);
-  limits_.acceleration = chosen("acceleration", params_.limits.acceleration,
+  limits_.velocity = chosen("velocity", params.limits.velocity, velocity).cwiseMin(1e6);
+  limits_.acceleration = chosen("acceleration", params.limits.acceleration,
                                 stated(acceleration.cwiseMin(deceleration)));
-  limits_.jerk = chosen("jerk", params_.limits.jerk, stated(described.jerk));
+  limits_.jerk = chosen("jerk", params.limits.jerk, stated(described.jerk));
 }
 
 void Retiming::carry(const inverse_dynamics_control::RigidBody& body) {
@@ -71,7 +85,7 @@ void Retiming::carry(const inverse_dynamics_control::RigidBody& body) {
 Path Retiming::path(const JointTrajectory& waypoints, const std::vector<Index>& stops,
                     std::optional<double> deviation) const {
   const Eigen::MatrixXd points = pointsOf(waypoints);
-  const double rounding = deviation.value_or(params_.deviation);
+  const double rounding = deviation.value_or(deviation_);
   Path path = rounding < 0 ? Path::spline(points, stops) : Path::lines(points, rounding, stops);
   checkRanges(path);
   return path;
@@ -102,7 +116,7 @@ MotionLimits Retiming::limits(const std::vector<std::string>& joints,
 Retiming::JointTrajectory Retiming::timed(const Path& path, const MotionLimits& limits,
                                           double slower) const {
   inverse_dynamics_timing::RetimeOptions choices;
-  choices.margin = params_.margin;
+  choices.margin = margin_;
   const Retimed fastest = inverse_dynamics_timing::retime(*solver_, path, limits, choices);
   if (!fastest) throw UserError(inverse_dynamics_timing::text(fastest.refusal, joints_));
   return sampled(inverse_dynamics_timing::slowed(fastest.trajectory, slower));
@@ -156,7 +170,7 @@ void Retiming::checkRanges(const Path& path) const {
 Retiming::JointTrajectory Retiming::sampled(const Trajectory& motion) const {
   JointTrajectory result;
   result.joint_names = joints_;
-  const VectorXd times = inverse_dynamics_timing::sampleTimes(motion.duration(), params_.rate);
+  const VectorXd times = inverse_dynamics_timing::sampleTimes(motion.duration(), rate_);
   result.points.resize(static_cast<std::size_t>(times.size()));
   VectorXd q(lower_.size()), qd(q), qdd(q);
   for (Index k = 0; k < times.size(); ++k) {

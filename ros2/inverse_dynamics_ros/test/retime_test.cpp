@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <exception>
+#include <inverse_dynamics_ros/retime_parameters.hpp>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
 #include <string>

@@ -11,7 +11,7 @@
 #include <class_loader/class_loader.hpp>
 #include <cmath>
 #include <exception>
-#include <inverse_dynamics_ros/robot_parameters.hpp>
+#include <inverse_dynamics_ros/retiming.hpp>
 #include <memory>
 #include <moveit/planning_interface/planning_response_adapter.hpp>
 #include <moveit/robot_trajectory/robot_trajectory.hpp>
@@ -19,22 +19,15 @@
 #include <rclcpp/node.hpp>
 #include <string>
 
-#include "retiming.hpp"
-#include "robot_parameters.hpp"
+namespace inverse_dynamics_moveit {
 
-namespace inverse_dynamics_ros {
+using inverse_dynamics_ros::Retiming;
 
 class AddTorqueLimitedTiming : public planning_interface::PlanningResponseAdapter {
  public:
   void initialize(const rclcpp::Node::SharedPtr& node, const std::string& pipeline) override {
     logger_ = node->get_logger().get_child("retime");
-    const std::string prefix = pipeline + ".retime.";
-    const robot_parameters::ParamListener of_robot(node, prefix);
-    const retime::ParamListener listener(node, prefix);
-    const NodeRobot robot(givenParameters(*node, prefix));
-    std::string description = robot.description();
-    if (description.empty()) node->get_parameter("robot_description", description);
-    retiming_ = std::make_unique<Retiming>(robot, description, listener.get_params());
+    retiming_.reset(new Retiming(Retiming::ofNode(*node, pipeline + ".retime.")));
   }
 
   std::string getDescription() const override { return "AddTorqueLimitedTiming"; }
@@ -77,7 +70,7 @@ class AddTorqueLimitedTiming : public planning_interface::PlanningResponseAdapte
   std::unique_ptr<Retiming> retiming_;
 };
 
-}  // namespace inverse_dynamics_ros
+}  // namespace inverse_dynamics_moveit
 
-CLASS_LOADER_REGISTER_CLASS(inverse_dynamics_ros::AddTorqueLimitedTiming,
+CLASS_LOADER_REGISTER_CLASS(inverse_dynamics_moveit::AddTorqueLimitedTiming,
                             planning_interface::PlanningResponseAdapter)

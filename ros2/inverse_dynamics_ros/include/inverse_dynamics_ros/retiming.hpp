@@ -6,18 +6,22 @@
 #pragma once
 
 #include <inverse_dynamics_control/payload_ramp.hpp>
-#include <inverse_dynamics_ros/retime_parameters.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_timing/retime.hpp>
 #include <memory>
 #include <optional>
+#include <rclcpp/node.hpp>
 #include <string>
 #include <trajectory_msgs/msg/joint_trajectory.hpp>
 #include <vector>
 
-#include "robot_parameters.hpp"
+namespace retime {
+struct Params;
+}
 
 namespace inverse_dynamics_ros {
+
+class NodeRobot;
 
 /// Limits for one path: one number per joint, or one for all; empty: of the parameters.
 struct PathLimits {
@@ -28,6 +32,14 @@ struct PathLimits {
 class Retiming {
  public:
   using JointTrajectory = trajectory_msgs::msg::JointTrajectory;
+
+  /// The arm and the limits of a node's parameters, which are declared here (but for the solver's): tables
+  /// `retime` and `robot` of the package's README.
+  ///
+  /// Without a description below the prefix, the node's parameter `robot_description` is the robot's.
+  /// @param prefix  of their names, such as `ompl.retime.`.
+  /// @throws  what the constructor and ParamListener throw.
+  static Retiming ofNode(rclcpp::Node& node, const std::string& prefix = "");
 
   /// @param description  text of a URDF, of limits too; empty: none.
   /// @throws UserError, inverse_dynamics_solver::Exception: what NodeRobot::makeSolver() says; no torque limit; a
@@ -70,7 +82,7 @@ class Retiming {
   const std::string& tip() const { return tip_; }
 
  private:
-  void describeLimits(const std::string& description);
+  void describeLimits(const std::string& description, const retime::Params& params);
   std::vector<Eigen::Index> placesOf(const std::vector<std::string>& names) const;
   Eigen::MatrixXd pointsOf(const JointTrajectory& waypoints) const;
   void checkRanges(const inverse_dynamics_timing::Path& path) const;
@@ -79,8 +91,8 @@ class Retiming {
   std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver> solver_;
   inverse_dynamics_control::PayloadRamp load_;
   std::string tip_;
-  std::vector<std::string> joints_;  // in trajectories
-  retime::Params params_;
+  std::vector<std::string> joints_;   // in trajectories
+  double deviation_, rate_, margin_;  // the parameters
   inverse_dynamics_timing::MotionLimits limits_;
   Eigen::VectorXd lower_, upper_;  // rad
 };
