@@ -37,7 +37,8 @@ if(NOT MuJoCo_LIBRARY AND MuJoCo_versioned)
 endif()
 
 include(FindPackageHandleStandardArgs)
-find_package_handle_standard_args(MuJoCo REQUIRED_VARS MuJoCo_LIBRARY MuJoCo_INCLUDE_DIR)
+find_package_handle_standard_args(MuJoCo REQUIRED_VARS MuJoCo_LIBRARY MuJoCo_INCLUDE_DIR
+  REASON_FAILURE_MESSAGE "install ros-DISTRO-mujoco-vendor with apt or mujoco with pip, or set MuJoCo_ROOT")
 if(MuJoCo_FOUND AND NOT TARGET MuJoCo::mujoco)
   add_library(MuJoCo::mujoco UNKNOWN IMPORTED)
   set_target_properties(MuJoCo::mujoco PROPERTIES
