@@ -115,6 +115,16 @@ struct Node {
   }
 };
 
+// From iron on.
+struct NewerNode : Node {
+  std::function<void(const std::vector<Parameter>&)> changed;
+  std::shared_ptr<void> add_post_set_parameters_callback(
+      std::function<void(const std::vector<Parameter>&)> call) {
+    changed = std::move(call);
+    return nullptr;
+  }
+};
+
 class CarriedBodyTest : public testing::Test {
  protected:
   void SetUp() override { arm->initialize(); }
@@ -140,6 +150,16 @@ TEST_F(CarriedBodyTest, ChangesTakeTheTimeOfTheRampOnTheNodesClock) {
   EXPECT_NE(half, empty);
   for (int k = 0; k < 6; ++k) node.spin(0.1);
   EXPECT_NEAR(shoulder() - empty, 2.0 * (half - empty), 1e-9);
+}
+
+TEST_F(CarriedBodyTest, ChangesAreTakenWithoutATimerWhereTheNodeTellsOfThem) {
+  NewerNode newer;
+  const CarriedBody<NewerNode, Message> body(newer, 1, 1, [](const std::string&) {});
+  EXPECT_EQ(newer.timers.size(), 1u);  // the ramp's
+  ASSERT_TRUE(newer.set("payload.mass", {2.0}).successful);
+  EXPECT_EQ(body.body().mass, 0.0);  // another check may refuse it
+  newer.changed({});
+  EXPECT_EQ(body.body().mass, 2.0);
 }
 
 TEST_F(CarriedBodyTest, AJumpOfTheClockIsNoJumpOfTorques) {

@@ -35,7 +35,7 @@ class ParameterWatch {
   /// @param names  declared parameters of the node.
   /// @param check  throws if the values of all these parameters don't fit; its text is the reason of
   ///     the refusal.
-  /// @param apply  called by the node's executor, within 50 ms of a change.
+  /// @param apply  called after a change; in humble by the node's executor, within 50 ms.
   ParameterWatch(Node& node, const std::vector<std::string>& names, Function check,
                  Function apply) {
     // The interface, not the node: the node keeps what is made here, and must not be kept by it.
@@ -45,18 +45,19 @@ class ParameterWatch {
           const auto interface = parameters.lock();
           return checked(wanted, interface ? valuesOf(*interface, names) : Values(), check);
         });
-    // A change that passes this check may be refused by another one, and humble has no callback after
-    // all of them.
+    // A change that passes this check may be refused by another one.
     const auto last = std::make_shared<Values>(valuesOf(*parameters.lock(), names));
-    polling_ = node.create_wall_timer(std::chrono::milliseconds(50),
-                                      [parameters, names, last, apply = std::move(apply)] {
-                                        const auto interface = parameters.lock();
-                                        if (interface == nullptr) return;
-                                        Values now = valuesOf(*interface, names);
-                                        if (now == *last) return;
-                                        *last = std::move(now);
-                                        apply(*last);
-                                      });
+    following_ = afterChanges(
+        node,
+        [parameters, names, last, apply = std::move(apply)] {
+          const auto interface = parameters.lock();
+          if (interface == nullptr) return;
+          Values now = valuesOf(*interface, names);
+          if (now == *last) return;
+          *last = std::move(now);
+          apply(*last);
+        },
+        0);
   }
 
   /// Values of declared parameters, by name.
@@ -88,7 +89,18 @@ class ParameterWatch {
     return result;
   }
 
-  std::shared_ptr<void> checking_, polling_;
+  template <class N>
+  static auto afterChanges(N& node, const std::function<void()>& call, int)
+      -> decltype(node.add_post_set_parameters_callback(std::function<void(const Parameters&)>())) {
+    return node.add_post_set_parameters_callback([call](const Parameters&) { call(); });
+  }
+  // Humble has no callback after a change.
+  template <class N>
+  static std::shared_ptr<void> afterChanges(N& node, const std::function<void()>& call, long) {
+    return node.create_wall_timer(std::chrono::milliseconds(50), call);
+  }
+
+  std::shared_ptr<void> checking_, following_;
 };
 
 }  // namespace v2
