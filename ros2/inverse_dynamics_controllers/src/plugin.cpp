@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <rclcpp/version.h>
+
 #include <pluginlib/class_list_macros.hpp>
 
 #include "inverse_dynamics_controllers/external_wrench_broadcaster.hpp"
@@ -6,9 +8,6 @@
 #include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
 #include "inverse_dynamics_controllers/pd_gravity_compensation_controller.hpp"
-
-static_assert(inverse_dynamics_controllers::kExportsStates == bool(CONTROLLERS_EXPORT_STATES),
-              "the plugin file names another base class than the broadcaster has");
 
 PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::InverseDynamicsController,
                        controller_interface::ChainableControllerInterface)
@@ -18,7 +17,7 @@ PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::FeedForwardController,
                        controller_interface::ChainableControllerInterface)
 PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::PdGravityCompensationController,
                        controller_interface::ChainableControllerInterface)
-#if CONTROLLERS_EXPORT_STATES
+#if RCLCPP_VERSION_GTE(17, 0, 0)
 PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::ExternalWrenchBroadcaster,
                        controller_interface::ChainableControllerInterface)
 #else

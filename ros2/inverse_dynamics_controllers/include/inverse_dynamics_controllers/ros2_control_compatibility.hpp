@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Differences between releases of ros2_control, from humble to rolling, detected by features.
+/// Differences between releases of ros2_control, from humble to rolling.
 ///
 ///     const double q = valueOf(state_interfaces_[0]);     // NaN where it can't be read
 ///     setValue(command_interfaces_[0], tau);
 #pragma once
+
+#include <rclcpp/version.h>
 
 #include <array>
 #include <controller_interface/chainable_controller_interface.hpp>
@@ -28,43 +30,6 @@ struct HasOptional : std::false_type {};
 template <class T>
 struct HasOptional<T, std::void_t<decltype(std::declval<const T&>().get_optional())>>
     : std::true_type {};
-
-template <class T, class = void>
-struct HasRobotDescription : std::false_type {};
-template <class T>
-struct HasRobotDescription<T,
-                           std::void_t<decltype(std::declval<const T&>().get_robot_description())>>
-    : std::true_type {};
-
-/// Whether references are exported as shared interfaces, which have values of their own (jazzy), or
-/// as interfaces on numbers of the controller (humble).
-struct SharedReferences : controller_interface::ChainableControllerInterface {
-  template <class T>
-  static auto find(int) -> decltype(&T::on_export_reference_interfaces_list, std::true_type());
-  template <class T>
-  static std::false_type find(...);
-};
-constexpr bool kHasSharedReferences = decltype(SharedReferences::find<SharedReferences>(0))::value;
-
-/// Whether controllers export state interfaces of their own (jazzy).
-struct SharedStates : controller_interface::ChainableControllerInterface {
-  template <class T>
-  static auto find(int) -> decltype(&T::on_export_state_interfaces_list, std::true_type());
-  template <class T>
-  static std::false_type find(...);
-};
-constexpr bool kHasSharedStates = decltype(SharedStates::find<SharedStates>(0))::value;
-
-/// Options with services that get and set the levels of loggers (jazzy).
-template <class Options>
-auto withLoggerService(Options options)
-    -> std::decay_t<decltype(options.enable_logger_service(true))> {
-  return options.enable_logger_service(true);
-}
-template <class Options, class... None>
-Options withLoggerService(Options options, None...) {
-  return options;
-}
 
 }  // namespace detail
 
@@ -108,42 +73,34 @@ bool setValue(Interface& interface, double value) noexcept {
 
 /// The robot description that the controller manager has given; empty where it gives none (humble).
 template <class Controller>
-std::string robotDescriptionOf(const Controller& controller) {
-  if constexpr (detail::HasRobotDescription<Controller>::value) {
-    return controller.get_robot_description();
-  } else {
-    return "";
-  }
+std::string robotDescriptionOf([[maybe_unused]] const Controller& controller) {
+#if RCLCPP_VERSION_GTE(17, 0, 0)
+  return controller.get_robot_description();
+#else
+  return "";
+#endif
 }
 
 /// A controller whose node has declared parameters alone, in all releases: no misspelt one is taken.
+#if RCLCPP_VERSION_GTE(17, 0, 0)
+template <class Base>
+using Strict = Base;
+#else
 template <class Base>
 class Strict : public Base {
  public:
-  using Base::init;
-
-  // NOLINTBEGIN(readability-identifier-naming, modernize-use-override): one overrides, one doesn't
-  /// From jazzy on.
-  rclcpp::NodeOptions define_custom_node_options() const {
-    return detail::withLoggerService(rclcpp::NodeOptions());
-  }
-
-  /// In humble, whose manager's options allow undeclared parameters; elsewhere never called.
   controller_interface::return_type init(const std::string& controller,
                                          const std::string& name_space,
-                                         const rclcpp::NodeOptions& options) {
+                                         const rclcpp::NodeOptions& options) override {
     return Base::init(controller, name_space,
                       rclcpp::NodeOptions(options)
                           .allow_undeclared_parameters(false)
                           .automatically_declare_parameters_from_overrides(false));
   }
-  // NOLINTEND(readability-identifier-naming, modernize-use-override)
 };
+#endif
 
 /// Base class of the chainable controllers, the same in all releases.
-///
-/// Of each pair of functions with different signatures, one overrides; neither is marked `override`,
-/// as the other one doesn't.
 class ChainableController : public Strict<controller_interface::ChainableControllerInterface> {
  protected:
   /// Names of the references below the controller's; called when it is configured.
@@ -173,67 +130,55 @@ class ChainableController : public Strict<controller_interface::ChainableControl
     for (const auto& reference : shared_) setValue(*reference, kNan);
   }
 
-  // NOLINTBEGIN(readability-identifier-naming, modernize-use-override): one overrides, one doesn't
-  controller_interface::return_type update_reference_from_subscribers() {
+  // NOLINTBEGIN(readability-identifier-naming)
+#if RCLCPP_VERSION_GTE(17, 0, 0)
+  controller_interface::return_type update_reference_from_subscribers(
+      const rclcpp::Time& /*time*/, const rclcpp::Duration& /*period*/) override {
     readReferenceTopic();
     return controller_interface::return_type::OK;
-  }
-  controller_interface::return_type update_reference_from_subscribers(const rclcpp::Time&,
-                                                                      const rclcpp::Duration&) {
-    readReferenceTopic();
-    return controller_interface::return_type::OK;
-  }
-
-  std::vector<hardware_interface::CommandInterface> on_export_reference_interfaces() {
-    return ownReferences<hardware_interface::CommandInterface>();
   }
   std::vector<std::shared_ptr<hardware_interface::CommandInterface>>
-  on_export_reference_interfaces_list() {
-    shared_ = sharedReferences<hardware_interface::CommandInterface>();
+  on_export_reference_interfaces_list() override {
+    shared_.clear();
+    for (const std::string& name : referenceNames()) {
+      shared_.push_back(
+          std::make_shared<hardware_interface::CommandInterface>(get_node()->get_name(), name));
+    }
     return shared_;
   }
-  // NOLINTEND(readability-identifier-naming, modernize-use-override)
+#else
+  controller_interface::return_type update_reference_from_subscribers() override {
+    readReferenceTopic();
+    return controller_interface::return_type::OK;
+  }
+  std::vector<hardware_interface::CommandInterface> on_export_reference_interfaces() override {
+    const std::vector<std::string> names = referenceNames();
+    reference_interfaces_.assign(names.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<hardware_interface::CommandInterface> references;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      references.emplace_back(get_node()->get_name(), names[k], &reference_interfaces_[k]);
+    }
+    return references;
+  }
+#endif
+  // NOLINTEND(readability-identifier-naming)
 
  private:
   std::size_t size() const noexcept {
     return shared_.empty() ? reference_interfaces_.size() : shared_.size();
   }
 
-  // On numbers of the controller.
-  template <class Interface>
-  std::vector<Interface> ownReferences() {
-    std::vector<Interface> references;
-    if constexpr (!detail::kHasSharedReferences) {
-      const std::vector<std::string> names = referenceNames();
-      reference_interfaces_.assign(names.size(), std::numeric_limits<double>::quiet_NaN());
-      for (std::size_t k = 0; k < names.size(); ++k) {
-        references.emplace_back(get_node()->get_name(), names[k], &reference_interfaces_[k]);
-      }
-    }
-    return references;
-  }
-
-  template <class Interface>
-  std::vector<std::shared_ptr<Interface>> sharedReferences() {
-    std::vector<std::shared_ptr<Interface>> references;
-    if constexpr (detail::kHasSharedReferences) {
-      for (const std::string& name : referenceNames()) {
-        references.push_back(std::make_shared<Interface>(get_node()->get_name(), name));
-      }
-    }
-    return references;
-  }
-
+  // From jazzy on; in humble references are numbers of the controller.
   std::vector<std::shared_ptr<hardware_interface::CommandInterface>> shared_;
 };
 
-/// Whether a Broadcaster has state interfaces; decides about its base class in the plugin file too.
-constexpr bool kExportsStates = detail::kHasSharedStates;
+/// Whether a Broadcaster has state interfaces.
+constexpr bool kExportsStates = RCLCPP_VERSION_GTE(17, 0, 0);
 
-/// A controller that commands nothing, with the state interfaces of a force-torque sensor that has
-/// the controller's name.
-template <class StateInterface>
-class ExportingBroadcaster : public ChainableController {
+/// Base class of controllers that measure: commands nothing, with the state interfaces of a
+/// force-torque sensor that has the controller's name where the release has them.
+#if RCLCPP_VERSION_GTE(17, 0, 0)
+class Broadcaster : public ChainableController {
  protected:
   /// A cycle.
   virtual controller_interface::return_type measure(const rclcpp::Time& time,
@@ -245,10 +190,12 @@ class ExportingBroadcaster : public ChainableController {
   }
 
   // NOLINTBEGIN(readability-identifier-naming)
-  std::vector<std::shared_ptr<StateInterface>> on_export_state_interfaces_list() override {
+  std::vector<std::shared_ptr<hardware_interface::StateInterface>> on_export_state_interfaces_list()
+      override {
     states_.clear();
     for (const char* name : {"force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z"}) {
-      states_.push_back(std::make_shared<StateInterface>(this->get_node()->get_name(), name));
+      states_.push_back(
+          std::make_shared<hardware_interface::StateInterface>(get_node()->get_name(), name));
     }
     return states_;
   }
@@ -262,11 +209,10 @@ class ExportingBroadcaster : public ChainableController {
   std::vector<std::string> referenceNames() const override { return {}; }
   void readReferenceTopic() noexcept override {}
 
-  std::vector<std::shared_ptr<StateInterface>> states_;
+  std::vector<std::shared_ptr<hardware_interface::StateInterface>> states_;
 };
-
-/// The same without state interfaces.
-class PlainBroadcaster : public Strict<controller_interface::ControllerInterface> {
+#else
+class Broadcaster : public Strict<controller_interface::ControllerInterface> {
  public:
   controller_interface::return_type update(const rclcpp::Time& time,
                                            const rclcpp::Duration& period) override {
@@ -278,10 +224,6 @@ class PlainBroadcaster : public Strict<controller_interface::ControllerInterface
                                                     const rclcpp::Duration& period) noexcept = 0;
   void setStates(const std::array<double, 6>& /*values*/) noexcept {}
 };
-
-/// Base class of controllers that measure: with state interfaces where the release has them.
-using Broadcaster =
-    std::conditional_t<kExportsStates, ExportingBroadcaster<hardware_interface::StateInterface>,
-                       PlainBroadcaster>;
+#endif
 
 }  // namespace inverse_dynamics_controllers
