@@ -88,7 +88,7 @@ chain_dynamics::OwnedVector torqueBand(const InverseDynamicsSolver& solver, doub
 
 PathDynamics::PathDynamics(const InverseDynamicsSolver& solver, const Path& path, const VectorXd& s,
                            const MotionLimits& limits, double margin)
-    : solver_(solver), path_(path), limits_(limits), s_(s), band_(torqueBand(solver, margin)) {
+    : solver_(solver), limits_(limits), s_(s), band_(torqueBand(solver, margin)) {
   const Index n = path.jointCount(), count = s.size();
   const bool accelerations = limits.acceleration.size() > 0;
   const Index rows = accelerations ? 2 * n : n;

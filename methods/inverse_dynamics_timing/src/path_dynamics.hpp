@@ -44,7 +44,6 @@ class PathDynamics {
 
  private:
   const InverseDynamicsSolver& solver_;
-  const Path& path_;
   const MotionLimits& limits_;
   Eigen::VectorXd s_, band_, cap_;
   Eigen::MatrixXd q_, dq_;

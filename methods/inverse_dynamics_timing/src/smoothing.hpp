@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 
 #include "inverse_dynamics_timing/retime.hpp"
 
