@@ -63,7 +63,7 @@ def _frames(html: Path, profile: Path) -> Iterator[Image]:
         driver.execute_script(
             "document.querySelector('nav').remove();"
             "document.documentElement.style.scrollPadding = 0;"
-            "document.querySelector('#run-1').scrollIntoView(true);"
+            "document.querySelector('#run-1 .robot').scrollIntoView(true);"
         )
         for k in range(FRAMES):
             driver.execute_script(
