@@ -121,7 +121,7 @@ def _subtracted(own: Floats, left: Floats, _: Floats) -> Mistake | None:
 
 def _load(parts: Floats, arm: ArmModel, body: Floats, _: Floats) -> Mistake | None:
     least, most = (share * arm.mass for share in _MASS)
-    if abs(body[0]) <= least or (arm.mass and body[0] > most):
+    if abs(body[0]) <= least or (arm.mass and body[0] > most) or body[0] < -arm.carried - least:
         return None
     if np.linalg.norm(body[1:]) > _REACH * abs(body[0]):
         return None
