@@ -18,11 +18,12 @@ namespace {
 
 using chain_dynamics::joined;
 
-/// What errors call the place of a field.
+/// Whether a field comes from a parameter of a node, not from the file.
 bool isParameter(const RunConfiguration& robot, const std::string& field) {
   return robot.file.empty() || robot.parameters_of_node.count(field) > 0;
 }
 
+/// What errors call the place of a field.
 std::string placeOf(const RunConfiguration& robot, const std::string& field) {
   return isParameter(robot, field) ? "parameter '" + field + "'" : robot.file + ": " + field;
 }

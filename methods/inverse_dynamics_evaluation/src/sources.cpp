@@ -62,7 +62,8 @@ double usualPeriod(const SampleTable& table) {
   return *middle;
 }
 
-// Samples whose positions leave the motion around them and return, in the order of the table.
+// Samples whose positions leave the motion around them and return, or lie off it at one of its ends; in the
+// order of the table.
 std::vector<Index> offTheWay(const SampleTable& table) {
   const double period = usualPeriod(table);
   // Farther than joints turn in the meantime.
