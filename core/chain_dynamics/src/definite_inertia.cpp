@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -172,7 +174,27 @@ bool inertiaIsDefinite(const Chain& chain) {
   return true;
 }
 
-bool Model::inertiaIsPhysical() const { return row_parameters.empty() && inertiaIsDefinite(chain); }
+bool inertiaIsDefinite(const std::vector<Branch>& branches) {
+  std::set<std::string> at_rest;  // joints, where there is no energy
+  for (const Branch& branch : branches) {
+    const std::vector<LinkParameters>& links = branch.chain.links();
+    if (!std::all_of(links.begin(), links.end(), energyIsNotNegative)) return false;
+    const std::vector<Joint>& joints = branch.chain.joints();
+    const auto moving = std::find_if(joints.begin(), joints.end(), [&](const Joint& joint) {
+      return at_rest.count(joint.name) == 0;
+    });
+    if (moving == joints.end()) continue;
+    const auto first = static_cast<std::size_t>(moving - joints.begin());
+    if (!inertiaIsDefinite(groupOf(branch.chain, first, joints.size() - 1))) return false;
+    for (const Joint& joint : joints) at_rest.insert(joint.name);
+  }
+  return true;
+}
+
+bool Model::inertiaIsPhysical() const {
+  if (!branches.empty()) return inertiaIsDefinite(branches);
+  return row_parameters.empty() && inertiaIsDefinite(chain);
+}
 
 }  // namespace v2
 }  // namespace chain_dynamics

@@ -29,11 +29,19 @@
 /// definite matrix, no energy means that no joint turns. What is left is the energy of the slides,
 /// whose matrix depends on angles only, too.
 ///
+/// **Branch by branch.** A mechanism's energy is the sum of those of its branches [mechanism.hpp]. If the
+/// first has none, none of its joints moves. Then those of the second move as if the joints that both
+/// share were held, and the same induction goes on. Joints at rest are coordinates at rest, because S has
+/// full column rank.
+///
 /// All comparisons leave room for rounding: what is within 1e-11 of singular counts as singular.
 
 #pragma once
 
+#include <vector>
+
 #include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/mechanism.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -41,6 +49,9 @@ inline namespace v2 {
 /// Whether H(q) is proved to be positive definite for every q; false where the proof fails or takes
 /// too long (groups of more than six joints, or too near to a singular position).
 bool inertiaIsDefinite(const Chain& chain);
+
+/// The same of the mechanism that these are the branches of.
+bool inertiaIsDefinite(const std::vector<Branch>& branches);
 
 }  // namespace v2
 }  // namespace chain_dynamics

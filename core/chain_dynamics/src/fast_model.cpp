@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "chain_dynamics/error.hpp"
 #include "fast/regroup.hpp"
 #include "fast/robot.hpp"
+#include "fast_branches.hpp"
 #include "fast_model_check.hpp"
 
 namespace chain_dynamics {
@@ -84,6 +86,32 @@ struct FastModel::Data {
     fillRobot();
   }
 
+  /// Of a mechanism; each branch and the friction made by `made`.
+  template <class Made>
+  Data(const Model& model, const Made& made) : Data(Model(model.chain)) {
+    robot.model = std::make_unique<const Model>(model);
+    std::set<Eigen::Index> links;
+    for (const Branch& branch : robot.model->branches) {
+      robot.branches.emplace_back(branch, made(Model(branch.chain)));
+      for (std::size_t i = 0; i < branch.link.size(); ++i) {
+        if (links.insert(branch.link[i]).second) {
+          robot.branches.back().own.push_back(static_cast<int>(i));
+        }
+      }
+    }
+    robot.links = static_cast<int>(links.size());
+    robot.load_friction = chain_dynamics::frictionDependsOnLoad(model);
+    if (!model.friction.empty() && !robot.load_friction) {
+      Model friction_alone(model.chain);
+      friction_alone.friction = model.friction;
+      friction_alone.coupling = model.coupling;
+      robot.friction_alone = std::make_unique<const FastModel>(
+          friction_alone, robot.branches.front().fast->instructionSet());
+    }
+    kernels = branchKernels(robot.branches.front().fast->kernels_->name);
+    many = manyBranchKernels();
+  }
+
   void fillRowLanes() {
     if (rows.empty()) return;
     row_lanes.resize(rows.size() * fast::kBodyNumbers * stride, 0.0);
@@ -115,6 +143,7 @@ struct FastModel::Data {
 
   void fillRobot() {
     robot.joints = static_cast<int>(bodies.size());
+    robot.links = robot.joints;
     robot.general_offsets = frames.general_offsets;
     robot.mixed = std::any_of(frames.placements.begin(), frames.placements.end(),
                               [](const fast::Placement& X) { return X.prismatic; });
@@ -144,7 +173,9 @@ struct FastModel::Data {
   std::vector<double> row_lanes;
   std::vector<double> friction;
   OwnedMatrix coupling;  // [motor][joint]
-  Robot robot{};
+  FastBranches robot{};
+  Kernels kernels{};  // of a mechanism
+  ManyKernels many{};
 };
 
 std::vector<std::string> FastModel::instructionSets() {
@@ -160,6 +191,15 @@ FastModel::FastModel(const Model& model, const std::string& instruction_set) {
     throw ModelError("fast model of " + model.name, "joints",
                      "at most " + std::to_string(kMaxJoints), std::to_string(n),
                      "use the functions of model.hpp");
+  }
+  if (!model.branches.empty()) {
+    data_ = std::make_unique<const Data>(model, [&](const Model& branch) {
+      auto fast = std::make_unique<const FastModel>(branch, instruction_set);
+      warnings_.insert(warnings_.end(), fast->warnings().begin(), fast->warnings().end());
+      return fast;
+    });
+    use(data_->kernels, data_->many);
+    return;
   }
   data_ = std::make_unique<const Data>(model);
   if (instruction_set.empty()) {
@@ -177,6 +217,19 @@ FastModel::FastModel(const Model& changed, const FastModel& original) {
     throw ModelError("fast model of " + changed.name, "joints",
                      std::to_string(original.robot().joints) + ", as the original has",
                      std::to_string(n), "make the model without an original");
+  }
+  const std::vector<FastBranch>& branches = original.data_->robot.branches;
+  if (changed.branches.size() != branches.size()) {
+    throw ModelError("fast model of " + changed.name, "branches", std::to_string(branches.size()),
+                     std::to_string(changed.branches.size()), "make the model without an original");
+  }
+  if (!branches.empty()) {
+    auto next = branches.begin();
+    data_ = std::make_unique<const Data>(changed, [&next](const Model& branch) {
+      return std::make_unique<const FastModel>(branch, *(next++)->fast);
+    });
+    use(data_->kernels, data_->many);
+    return;
   }
   data_ = std::make_unique<const Data>(changed);
   use(*original.kernels_, *original.many_);
@@ -219,6 +272,8 @@ void FastModel::coriolisVector(const double* q, const double* qd, double* c) con
 void FastModel::gravityVector(const double* q, double* g) const {
   kernels_->gravity(data_->robot, structure_, q, g);
 }
+
+Eigen::Index FastModel::linkCount() const { return data_->robot.links; }
 
 bool FastModel::frictionDependsOnLoad() const { return data_->robot.load_friction; }
 

@@ -152,12 +152,16 @@ void FastModel::tipJacobianDerivativeBatch(ConstStates q, ConstStates qd,
 void FastModel::regressorBatch(ConstStates q, ConstStates qd, ConstStates qdd,
                                StridedMatrices Y) const {
   many_->regressor(robot(), q.count, samples(q), samples(qd), samples(qdd),
-                   matrices(Y.withColumns(10 * q.joints)));
+                   matrices(Y.withColumns(10 * linkCount())));
 }
 
 void FastModel::addToGram(const GramSamples& given, RegressorGram& gram) const {
   const Index n = robot().joints;
   const Index count = given.q.count;
+  if (many_->gram == nullptr) {
+    throw ModelError("Gram matrix of the regressor", "robot", "a chain", "a mechanism of branches",
+                     "sum the products of regressor() rows");
+  }
   if (gram.joints() != n || gram.ownColumns() != static_cast<Index>(given.own_columns.size())) {
     throw ModelError("Gram matrix of the regressor", "joints x own columns",
                      std::to_string(n) + " x " + std::to_string(given.own_columns.size()),

@@ -15,8 +15,10 @@
 #include "chain_dynamics/energy.hpp"
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/gravity_vector.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/parameter_sets.hpp"
 #include "chain_dynamics/torque_derivatives.hpp"
+#include "model_branches.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -118,6 +120,14 @@ void checkCoupling(const Model& model) {
   }
 }
 
+void checkBranches(const Model& model) {
+  if (model.branches.empty()) return;
+  checkMechanism({model.chain, model.branches});
+  if (model.row_parameters.empty() && model.gravity_parameters.empty()) return;
+  throw ModelError("model " + model.name, "parameters of a mechanism", "one set, of its branches",
+                   "others for rows or for gravity", "leave them out");
+}
+
 void checkDriveGains(const Model& model) {
   checkCount(model, "drive gains", static_cast<std::size_t>(model.drive_gains.size()));
   for (Eigen::Index j = 0; j < model.drive_gains.size(); ++j) {
@@ -155,6 +165,7 @@ void checkExperience(const Model& model) {
 
 void checkModel(const Model& model) {
   checkParameterSets(model.chain, setsOf(model));
+  checkBranches(model);
   checkFrictionLaws(model);
   checkCoupling(model);
   checkDriveGains(model);
@@ -163,40 +174,52 @@ void checkModel(const Model& model) {
 
 void torques(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
              const ConstVectorRef& qdd, VectorRef tau) {
+  if (!model.branches.empty()) return sums::torques(model, q, qd, qdd, tau);
   torques(model.chain, setsOf(model), q, qd, qdd, tau);
 }
 
 void inertiaMatrix(const Model& model, const ConstVectorRef& q, MatrixRef H) {
+  if (!model.branches.empty()) return sums::inertiaMatrix(model, q, H);
   inertiaMatrix(model.chain, setsOf(model), q, H);
 }
 
 void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     VectorRef c) {
+  if (!model.branches.empty()) return sums::coriolisVector(model, q, qd, c);
   coriolisVector(model.chain, setsOf(model), q, qd, c);
 }
 
 void coriolisMatrix(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     MatrixRef C) {
+  if (!model.branches.empty()) return sums::coriolisMatrix(model, q, qd, C);
   coriolisMatrix(model.chain, setsOf(model), q, qd, C);
 }
 
 void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g) {
+  if (!model.branches.empty()) return sums::gravityVector(model, q, g);
   gravityVector(model.chain, setsOf(model), q, g);
 }
 
 void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                        MatrixRef H, VectorRef c, VectorRef g) {
+  if (!model.branches.empty()) {
+    inertiaMatrix(model, q, H);
+    coriolisVector(model, q, qd, c);
+    return gravityVector(model, q, g);
+  }
   dynamicComponents(model.chain, setsOf(model), q, qd, H, c, g);
 }
 
 double kineticEnergy(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd) {
   assert(model.row_parameters.empty());
+  if (!model.branches.empty()) return sums::kineticEnergy(model, q, qd);
   return kineticEnergy(model.chain, q, qd);
 }
 
 double potentialEnergy(const Model& model, const ConstVectorRef& q) {
   const bool own = !model.gravity_parameters.empty();
   assert(own || model.row_parameters.empty());
+  if (!model.branches.empty()) return sums::potentialEnergy(model, q);
   return internal::potentialEnergyOf(model.chain,
                                      own ? model.gravity_parameters : model.chain.links(), q);
 }
@@ -244,6 +267,16 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
   }
   if (!frictionDependsOnLoad(model)) return;
 
+  const auto loadSlope = [&](Eigen::Index j) {
+    return frictionLoadSlope(model.friction[static_cast<std::size_t>(j)], velocity(j), load.g[j]);
+  };
+  if (!model.branches.empty()) {
+    Scratch<double> memory(n);
+    Eigen::Map<Eigen::VectorXd> slopes(&memory[0], n);
+    for (Eigen::Index j = 0; j < n; ++j) slopes[j] = loadSlope(j);
+    return sums::addGravityDerivatives(model, q, slopes, dtau_dq);
+  }
+
   // df/dq = df/dg dg/dq, a column of dg/dq at a time
   using Number = Dual<double, 1>;
   Scratch<Number> q_memory(n);
@@ -253,16 +286,16 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
     for (Eigen::Index j = 0; j < n; ++j) moved[j] = q[j];
     moved[i] = Number::variable(q[i], 0);
     gravityVector(model.chain, setsOf(model), moved, g);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const FrictionLaw& law = model.friction[static_cast<std::size_t>(j)];
-      dtau_dq(j, i) += frictionLoadSlope(law, velocity(j), load.g[j]) * g[j].derivative[0];
-    }
+    for (Eigen::Index j = 0; j < n; ++j) dtau_dq(j, i) += loadSlope(j) * g[j].derivative[0];
   }
 }
 
 void torqueDerivatives(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                        const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
                        MatrixRef dtau_dqdd) {
+  if (!model.branches.empty()) {
+    return sums::torqueDerivatives(model, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
+  }
   torqueDerivatives(model.chain, setsOf(model), q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
 }
 

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "chain_dynamics/joint_frame.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
 #include "definite_inertia.hpp"
@@ -179,15 +181,36 @@ std::size_t leafBelow(const RobotDescription& robot, std::size_t root) {
   return tip.link;
 }
 
+/// Which joint a joint follows in the end, through others, and how: itself if it mimics none.
+RobotDescription::Mimic leaderOf(const RobotDescription& robot, std::size_t joint) {
+  RobotDescription::Mimic leader{joint, 1, 0};
+  for (std::size_t steps = 0; robot.joints[leader.joint].mimic; ++steps) {
+    const RobotDescription::Mimic& next = *robot.joints[leader.joint].mimic;
+    if (steps == robot.joints.size()) {
+      throw ModelError(where(robot.joints[joint]), "<mimic>", "a joint that follows another one",
+                       "one that follows itself through joint " + robot.joints[next.joint].name,
+                       "take a <mimic> out of the loop");
+    }
+    leader.offset += leader.multiplier * next.offset;
+    leader.multiplier *= next.multiplier;
+    leader.joint = next.joint;
+  }
+  return leader;
+}
+
 // ---------------------------------------------------------------------------------------------
 // Joints that are held
 
-/// Where joints are held: those beside the path and beyond the tip, and those on it whose position is given.
+/// Where joints are held: those beside the paths and beyond the tips, and those on them whose position is
+/// given.
 class LockedJoints {
  public:
-  LockedJoints(const RobotDescription& robot, const UrdfOptions& options, const Path& path)
+  LockedJoints(const RobotDescription& robot, const UrdfOptions& options,
+               const std::vector<Path>& paths)
       : robot_(robot), on_path_(robot.joints.size(), false), used_(on_path_) {
-    for (const Step& step : path) on_path_[step.joint] = true;
+    for (const Path& path : paths) {
+      for (const Step& step : path) on_path_[step.joint] = true;
+    }
     given_.resize(robot.joints.size());
     for (std::size_t j = 0; j < given_.size() && options.locked_position; ++j) {
       given_[j] = options.locked_position(robot.joints[j].name);
@@ -197,8 +220,21 @@ class LockedJoints {
 
   bool onPath(std::size_t j) const { return on_path_[j]; }
 
-  /// Whether the chain moves a joint of the path.
-  bool moves(std::size_t j) const { return isMovable(robot_.joints[j]) && !given_[j]; }
+  /// Whether the chain moves a joint of the path. One that mimics a joint that is held is held, too.
+  bool moves(std::size_t j) const {
+    const std::size_t leader = leaderOf(robot_, j).joint;
+    return movesItself(j) && (leader == j || movesItself(leader));
+  }
+
+  /// Refuses a joint that follows one which moves, but isn't on a path.
+  void checkLeader(std::size_t j) const {
+    const std::size_t leader = leaderOf(robot_, j).joint;
+    if (!movesItself(j) || !movesItself(leader) || onPath(leader)) return;
+    throw ModelError(where(robot_.joints[j]), "<mimic>",
+                     "a joint that follows one between root and tips",
+                     "one that follows joint " + robot_.joints[leader].name,
+                     "add a tip beyond that joint, or hold it at a position");
+  }
 
   /// Where a joint that is held has moved its link.
   Transform<double> motion(std::size_t j) {
@@ -241,6 +277,8 @@ class LockedJoints {
   }
 
  private:
+  bool movesItself(std::size_t j) const { return isMovable(robot_.joints[j]) && !given_[j]; }
+
   /// The position of a joint, or the one that it has by following others.
   double position(std::size_t j) {
     Joints followers;
@@ -288,22 +326,33 @@ class LockedJoints {
 // ---------------------------------------------------------------------------------------------
 // The chain
 
+/// What the chains from one root share.
+struct Family {
+  LockedJoints locked;
+  bool mimics = false;         ///< whether joints may follow others
+  std::vector<bool> has_mass;  ///< links that are in a chain, which has their mass
+};
+
 /// Makes joints and links of a chain from the URDF joints on its path.
 class Builder {
  public:
   Builder(const RobotDescription& robot, const UrdfOptions& options, std::size_t root,
-          std::size_t tip)
+          std::size_t tip, Family& family)
       : robot_(robot),
         options_(options),
         root_(root),
         tip_(tip),
         path_(pathBetween(robot, root, tip)),
-        locked_(robot, options, path_) {}
+        family_(family),
+        locked_(family.locked) {}
 
+  /// The chain; links that another chain of the family has moved before have mass here, too.
   Chain chain() {
     for (const Step& step : path_) {
       const RobotDescription::Joint& joint = robot_.joints[step.joint];
       if (!step.up) X_EU_ = X_EU_ * joint.placement;
+      const std::size_t link = step.up ? joint.parent : joint.child;
+      is_first_ = !family_.has_mass[link];
       if (locked_.moves(step.joint)) {
         addJoint(joint, step.up);
       } else {
@@ -312,17 +361,46 @@ class Builder {
       }
       if (step.up) X_EU_ = X_EU_ * joint.placement.inverse();
       if (!links_.empty()) {
-        const std::size_t link = step.up ? joint.parent : joint.child;
-        links_.back() += X_EU_ * parameters(robot_.links[link]);
+        add(X_EU_ * parameters(robot_.links[link]));
         parts_.back().push_back(link);
         lumpBranches(robot_.links[link]);
+        family_.has_mass[link] = true;
       }
     }
     checkMovable();
-    for (LinkParameters& parameters : links_) parameters = symmetric(parameters);
-    const Chain chain(robot_.name, joints_, links_, options_.gravity.value_or(kDown), X_EU_);
+    for (auto* const links : {&links_, &own_}) {
+      for (LinkParameters& parameters : *links) parameters = symmetric(parameters);
+    }
+    Chain chain(robot_.name, joints_, links_, options_.gravity.value_or(kDown), X_EU_);
     if (!options_.allow_massless) checkMassless(chain);
-    return chain.withWarnings(warnings(chain));
+    return chain;
+  }
+
+  /// The same without the mass and rotors of what another chain of the family has moved before; after
+  /// chain().
+  Chain ownPart() const {
+    return {robot_.name, joints_, own_, options_.gravity.value_or(kDown), X_EU_};
+  }
+
+  /// What is odd: about the description, the held joints, and the parts of each link; after all chains
+  /// of the family.
+  std::vector<std::string> warnings(const Chain& chain) const {
+    std::vector<std::string> texts = robot_.warnings;
+    warnOfGravity(texts);
+    warnOfSwappedEnds(texts);
+    const std::vector<std::string> locked = locked_.warnings(options_.lump_attached);
+    texts.insert(texts.end(), locked.begin(), locked.end());
+    for (const auto& doubts : {inertiaDoubts(robot_, chain, parts_), limitDoubts(chain)}) {
+      texts.insert(texts.end(), doubts.begin(), doubts.end());
+    }
+    bool named = true;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      named = (inertiaDefect(chain.links()[i]).empty() || addDefects(i, texts)) && named;
+    }
+    if (!named) {  // not of one part alone
+      texts.insert(texts.end(), chain.warnings().begin(), chain.warnings().end());
+    }
+    return texts;
   }
 
  private:
@@ -334,7 +412,7 @@ class Builder {
                        joint.type == Type::kPlanar ? "planar" : "floating",
                        "choose root and tip so that it isn't between them");
     }
-    if (joint.mimic) {
+    if (joint.mimic && !family_.mimics) {
       throw ModelError(where(joint), "<mimic>", "a joint that moves by itself",
                        "one that follows joint " + robot_.joints[joint.mimic->joint].name,
                        "choose root and tip so that it isn't between them; arms with a "
@@ -351,21 +429,28 @@ class Builder {
     result.limits = joint.limits;
     result.damping = joint.damping;
     result.friction = joint.friction;
-    if (options_.rotor_inertia) result.rotor_inertia = options_.rotor_inertia(joint);
+    if (options_.rotor_inertia && is_first_) result.rotor_inertia = options_.rotor_inertia(joint);
     joints_.push_back(result);
     links_.push_back(LinkParameters::zero());
+    own_.push_back(LinkParameters::zero());
     parts_.emplace_back();
     X_EU_ = {R_UE.transpose(), Eigen::Vector3d::Zero()};
+  }
+
+  /// Adds a body to the last link.
+  void add(const LinkParameters& body) {
+    links_.back() += body;
+    if (is_first_) own_.back() += body;
   }
 
   /// Adds bodies attached to a link of the path, beside the path or beyond its end.
   void lumpBranches(const Link& link) {
     if (!options_.lump_attached) return;
     for (const std::size_t j : link.child_joints) {
-      if (!locked_.onPath(j)) links_.back() += X_EU_ * branch(j);
+      if (!locked_.onPath(j)) add(X_EU_ * branch(j));
     }
     if (link.parent_joint != kNone && !locked_.onPath(link.parent_joint)) {
-      links_.back() += X_EU_ * trunk(link);
+      add(X_EU_ * trunk(link));
     }
   }
 
@@ -429,26 +514,6 @@ class Builder {
                          " an <inertial>, or set allow_massless to true");
   }
 
-  /// What is odd: about the description, the held joints, and the parts of each link.
-  std::vector<std::string> warnings(const Chain& chain) const {
-    std::vector<std::string> texts = robot_.warnings;
-    warnOfGravity(texts);
-    warnOfSwappedEnds(texts);
-    const std::vector<std::string> locked = locked_.warnings(options_.lump_attached);
-    texts.insert(texts.end(), locked.begin(), locked.end());
-    for (const auto& doubts : {inertiaDoubts(robot_, chain, parts_), limitDoubts(chain)}) {
-      texts.insert(texts.end(), doubts.begin(), doubts.end());
-    }
-    bool named = true;
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      named = (inertiaDefect(chain.links()[i]).empty() || addDefects(i, texts)) && named;
-    }
-    if (!named) {  // not of one part alone
-      texts.insert(texts.end(), chain.warnings().begin(), chain.warnings().end());
-    }
-    return texts;
-  }
-
   /// Names a default gravity that isn't down the z axis of the description's root.
   void warnOfGravity(std::vector<std::string>& texts) const {
     Matrix3<double> R_DR = Matrix3<double>::Identity();  // of the chain's root in the description's
@@ -501,27 +566,244 @@ class Builder {
   const UrdfOptions& options_;
   const std::size_t root_, tip_;  // links
   const Path path_;
-  LockedJoints locked_;
+  Family& family_;
+  LockedJoints& locked_;
+  bool is_first_ = true;  // in the family, to move the current link
   std::vector<Joint> joints_;
   std::vector<LinkParameters> links_;
+  std::vector<LinkParameters> own_;              // without what is_first_ is false of
   std::vector<std::vector<std::size_t>> parts_;  // links of the URDF, of each link of the chain
   std::vector<LinkParameters> body_;             // of branches, by joint
   /// Pose of the URDF's current link frame U in the chain's current link frame E.
   Transform<double> X_EU_ = Transform<double>::identity();
 };
 
+/// The root of the chain or mechanism.
+std::size_t rootOf(const RobotDescription& robot, const UrdfOptions& options) {
+  return options.root.empty() ? robot.root : linkNamed(robot, options.root, "root");
+}
+
+// ---------------------------------------------------------------------------------------------
+// Mechanisms
+
+/// What "*" stands for: see mechanismFromRobot().
+std::vector<std::size_t> movedLeaves(const RobotDescription& robot, const UrdfOptions& options,
+                                     std::size_t root) {
+  struct Leaf {
+    std::size_t link, last;  // last joint that moves it
+    Joints above;            // that joint is among them
+  };
+  std::vector<Leaf> leaves;
+  std::vector<bool> leads_on(robot.joints.size(), false);  // to a joint beyond it
+  for (const Reach& reach : leavesBelow(robot, root)) {
+    Joints above = jointsAbove(robot, reach.link);
+    above.resize(reach.joints);  // below root
+    const auto moves = [&](std::size_t j) {
+      return isMovable(robot.joints[j]) &&
+             !(options.locked_position && options.locked_position(robot.joints[j].name));
+    };
+    const auto last = std::find_if(above.begin(), above.end(), moves);
+    if (last == above.end()) continue;
+    std::for_each(last + 1, above.end(), [&](std::size_t j) { leads_on[j] = true; });
+    const std::size_t joint = *last;
+    leaves.push_back({reach.link, joint, std::move(above)});
+  }
+  std::vector<std::size_t> chosen;
+  for (const Leaf& leaf : leaves) {
+    const bool farthest = std::none_of(leaves.begin(), leaves.end(), [&](const Leaf& other) {
+      return other.last == leaf.last &&
+             (other.above.size() > leaf.above.size() ||
+              (other.above.size() == leaf.above.size() && other.link < leaf.link));
+    });
+    if (farthest && !leads_on[leaf.last]) chosen.push_back(leaf.link);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  if (chosen.empty()) {
+    throw ModelError(where(robot), "tip", "a leaf that a joint moves",
+                     "none below '" + robot.links[root].name + "'", "choose another root");
+  }
+  return chosen;
+}
+
+std::vector<std::size_t> tipLinks(const RobotDescription& robot, const UrdfOptions& options,
+                                  std::size_t root, const std::vector<std::string>& tips) {
+  if (tips.empty()) return {leafBelow(robot, root)};
+  if (tips.size() == 1 && tips[0] == "*") return movedLeaves(robot, options, root);
+  std::vector<std::size_t> links;
+  for (const std::string& tip : tips) {
+    const std::size_t link = linkNamed(robot, tip, "tip");
+    if (std::find(links.begin(), links.end(), link) != links.end()) {
+      throw ModelError(where(robot), "tip", "each link once", "'" + tip + "' twice", "");
+    }
+    links.push_back(link);
+  }
+  return links;
+}
+
+/// Numbers the joints that move, and adds to a coordinate what its followers have.
+class Coordinates {
+ public:
+  Coordinates(const RobotDescription& robot, const LockedJoints& locked)
+      : robot_(robot), link_(robot.joints.size()), coordinate_(robot.joints.size()) {
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      if (!locked.onPath(j) || !locked.moves(j)) continue;
+      link_[j] = links_++;
+      if (!robot.joints[j].mimic) coordinate_[j] = coordinates_++;
+    }
+    joints_.resize(static_cast<std::size_t>(coordinates_));
+  }
+
+  Branch branch(const std::string& tip, Chain chain) const {
+    Branch result{tip, std::move(chain), {}, {}, {}};
+    for (Eigen::Index i = 0; i < result.chain.jointCount(); ++i) {
+      const std::size_t j = indexOf(result.chain.joints()[static_cast<std::size_t>(i)]);
+      const RobotDescription::Mimic leader = leaderOf(robot_, j);
+      if (leader.multiplier != 0) {
+        result.S.push_back({i, coordinate_[leader.joint], leader.multiplier});
+      }
+      result.s.push_back(leader.offset);
+      result.link.push_back(link_[j]);
+    }
+    return result;
+  }
+
+  /// Joints that mimic no other one come first: call it for all branches with `follow` false, then true.
+  void take(const Chain& branch, bool follow) {
+    for (const Joint& joint : branch.joints()) {
+      const RobotDescription::Mimic leader = leaderOf(robot_, indexOf(joint));
+      if (robot_.joints[indexOf(joint)].mimic.has_value() != follow) continue;
+      if (!taken_.insert(joint.name).second) continue;
+      Joint& to = joints_[static_cast<std::size_t>(coordinate_[leader.joint])];
+      if (follow) {
+        addFollower(to, joint, leader);
+      } else {
+        to = joint;
+        to.placement = Transform<double>::identity();
+      }
+    }
+  }
+
+  Eigen::Index joints() const { return links_; }
+  std::vector<std::string> warnings() const { return warnings_; }
+
+  Chain chain(const Eigen::Vector3d& gravity) const {
+    if (joints_.empty() || joints_.size() > kMostCoordinates ||
+        links_ > static_cast<Eigen::Index>(kMostMovingJoints)) {
+      throw ModelError(where(robot_), "joints between root and tips",
+                       "1 to " + std::to_string(kMostMovingJoints) + ", of which 1 to " +
+                           std::to_string(kMostCoordinates) + " mimic no other",
+                       std::to_string(links_) + " and " + std::to_string(joints_.size()),
+                       "name fewer tips, or hold joints at a position");
+    }
+    return {robot_.name, joints_,
+            std::vector<LinkParameters>(joints_.size(), LinkParameters::zero()), gravity};
+  }
+
+ private:
+  std::size_t indexOf(const Joint& joint) const { return robot_.jointIndex(joint.name); }
+
+  void addFollower(Joint& to, const Joint& joint, const RobotDescription::Mimic& leader) {
+    const double a = leader.multiplier;
+    to.rotor_inertia += a * a * joint.rotor_inertia;
+    to.damping += a * a * joint.damping;
+    to.friction += std::abs(a) * joint.friction;
+    if (a == 0) return;
+    const JointLimits& limits = joint.limits;
+    const double ends[] = {(limits.lower - leader.offset) / a, (limits.upper - leader.offset) / a};
+    const double lower = std::max(to.limits.lower, std::min(ends[0], ends[1]));
+    const double upper = std::min(to.limits.upper, std::max(ends[0], ends[1]));
+    if (lower <= upper) {
+      to.limits.lower = lower;
+      to.limits.upper = upper;
+    } else {
+      warnings_.push_back(printable("joint " + to.name + ": no position within its limits is one " +
+                                    "within those of joint " + joint.name +
+                                    ", which follows it: they aren't used"));
+    }
+    for (double JointLimits::*const limit : {&JointLimits::velocity, &JointLimits::acceleration,
+                                             &JointLimits::deceleration, &JointLimits::jerk}) {
+      to.limits.*limit = std::min(to.limits.*limit, limits.*limit / std::abs(a));
+    }
+  }
+
+  const RobotDescription& robot_;
+  std::vector<Eigen::Index> link_, coordinate_;  // of joints of the description
+  Eigen::Index links_ = 0, coordinates_ = 0;
+  std::vector<Joint> joints_;
+  std::set<std::string> taken_;
+  std::vector<std::string> warnings_;
+};
+
+/// Adds the texts that aren't there.
+void addNew(std::vector<std::string>& texts, const std::vector<std::string>& more) {
+  for (const std::string& text : more) {
+    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+  }
+}
+
+Family familyOf(const RobotDescription& robot, const UrdfOptions& options,
+                const std::vector<Path>& paths, bool mimics) {
+  return {LockedJoints(robot, options, paths), mimics,
+          std::vector<bool>(robot.links.size(), false)};
+}
+
 }  // namespace
 
 Chain chainFromRobot(const RobotDescription& robot, const UrdfOptions& options) {
-  const std::size_t root =
-      options.root.empty() ? robot.root : linkNamed(robot, options.root, "root");
+  const std::size_t root = rootOf(robot, options);
   const std::size_t tip =
       options.tip.empty() ? leafBelow(robot, root) : linkNamed(robot, options.tip, "tip");
-  return Builder(robot, options, root, tip).chain();
+  Family family = familyOf(robot, options, {pathBetween(robot, root, tip)}, false);
+  Builder builder(robot, options, root, tip, family);
+  const Chain chain = builder.chain();
+  return chain.withWarnings(builder.warnings(chain));
 }
 
 Chain chainFromUrdf(const std::string& urdf_xml, const UrdfOptions& options) {
   return chainFromRobot(robotFromUrdf(urdf_xml), options);
+}
+
+Mechanism mechanismFromRobot(const RobotDescription& robot, const UrdfOptions& options,
+                             const std::vector<std::string>& tips) {
+  const std::size_t root = rootOf(robot, options);
+  const std::vector<std::size_t> links = tipLinks(robot, options, root, tips);
+  std::vector<Path> paths;
+  for (const std::size_t link : links) paths.push_back(pathBetween(robot, root, link));
+  const auto mimics = [&robot](const Step& step) {
+    const RobotDescription::Joint& joint = robot.joints[step.joint];
+    return isMovable(joint) && joint.mimic;
+  };
+  if (links.size() == 1 && std::none_of(paths[0].begin(), paths[0].end(), mimics)) {
+    UrdfOptions one = options;
+    one.tip = robot.links[links[0]].name;
+    return {chainFromRobot(robot, one), {}};
+  }
+
+  Family family = familyOf(robot, options, paths, true);
+  for (const Path& path : paths) {
+    for (const Step& step : path) family.locked.checkLeader(step.joint);
+  }
+  Coordinates coordinates(robot, family.locked);
+  std::vector<Builder> builders;
+  std::vector<Chain> chains;
+  std::vector<Branch> branches;
+  for (const std::size_t link : links) {
+    builders.emplace_back(robot, options, root, link, family);
+    chains.push_back(builders.back().chain());
+    branches.push_back(coordinates.branch(robot.links[link].name, builders.back().ownPart()));
+  }
+  for (const bool follow : {false, true}) {
+    for (const Branch& branch : branches) coordinates.take(branch.chain, follow);
+  }
+  std::vector<std::string> warnings;
+  for (std::size_t b = 0; b < builders.size(); ++b)
+    addNew(warnings, builders[b].warnings(chains[b]));
+  addNew(warnings, coordinates.warnings());
+  Mechanism mechanism{
+      coordinates.chain(options.gravity.value_or(kDown)).withWarnings(std::move(warnings)),
+      std::move(branches)};
+  checkMechanism(mechanism);
+  return mechanism;
 }
 
 }  // namespace v2

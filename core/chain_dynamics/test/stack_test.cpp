@@ -27,6 +27,7 @@ constexpr std::size_t kKiB = 1024;
 constexpr std::size_t kPlainBound = 24 * kKiB;  // twice as much of derivatives
 constexpr std::size_t kOneStateBound = 48 * kKiB;
 constexpr std::size_t kManyStatesBound = 112 * kKiB;
+constexpr std::size_t kMechanismBound = 160 * kKiB;
 
 void* callFunction(void* function) {
   (*static_cast<const std::function<void()>*>(function))();
@@ -81,6 +82,23 @@ std::vector<Model> largest() {
   return {Model(chain), identified(chain, true, true, 3), withChangingSteps(rows, 5)};
 }
 
+/// Two branches of the same joints, one after its coordinates, the other after multiples of them: nothing
+/// that moves, but as much memory as a mechanism needs.
+Model largestMechanism() {
+  const Chain chain = randomChain(FastModel::kMaxJoints);
+  Branch branch{"tip", chain, {}, {}, {}};
+  for (Index j = 0; j < chain.jointCount(); ++j) {
+    branch.S.push_back({j, j, 1});
+    branch.s.push_back(0);
+    branch.link.push_back(j);
+  }
+  Branch other = branch;
+  for (Follow& entry : other.S) entry.factor = 0.5;
+  Model model(Mechanism{chain, {branch, other}});
+  model.friction.resize(chain.joints().size(), SmoothCoulomb{1, 2, 0.1, 0.01, 0.3, 0.1, 0.5, 0.2});
+  return model;
+}
+
 // Sanitizers, coverage and profiles need stack of their own; only some of them define a macro.
 constexpr bool kMeasurable = !CHAIN_DYNAMICS_INSTRUMENTED;
 const char* const kWhyNot = "instrumented code needs stack of its own";
@@ -123,6 +141,19 @@ TEST_P(Stack, OfDerivativesOfManyStatesIsBounded) {
     ManyStates states(all, kJoints, layouts()[0]);
     expectWithin(kManyStatesBound, GetParam(), states.callsOf(fast));
   }
+}
+
+TEST_P(Stack, OfMechanismsIsBounded) {
+  if (!kMeasurable) GTEST_SKIP() << kWhyNot;
+  const Model model = largestMechanism();
+  const FastModel fast(model, GetParam());
+  const State<double> x = randomState(model.chain, 1);
+  OneState state(x);
+  expectWithin(kMechanismBound, GetParam(), state.callsOf(fast));
+  ManyStates states(std::vector<State<double>>(20, x), model.chain.jointCount(), layouts()[0]);
+  Calls calls = states.callsOf(fast);
+  calls.erase("derivatives");
+  expectWithin(kMechanismBound, GetParam(), calls);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Stack, ::testing::ValuesIn(FastModel::instructionSets()),

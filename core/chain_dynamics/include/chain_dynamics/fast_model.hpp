@@ -37,11 +37,13 @@ struct ManyKernels;
 struct Robot;
 }  // namespace fast
 
-/// A model made ready for the fast kernels.
+/// A model made ready for the fast kernels. Of a mechanism [mechanism.hpp] the tip is that of the first
+/// branch.
 ///
 /// Up to kMaxJoints joints. Real time: no method but the constructor, addToGram(),
 /// torqueDerivativesBatch() and coriolisMatrixBatch() allocates, locks or throws; one state needs up to 48 KiB of stack, many
-/// states up to 112 KiB [docs/real_time.md]. Threads: safe. NaN gives NaN in every entry that
+/// states up to 112 KiB; of a mechanism 160 KiB, and the regressor of a branch of more than 32 joints
+/// allocates [docs/real_time.md]. Threads: safe. NaN gives NaN in every entry that
 /// depends on it. A vector may be written where one of the inputs stands (tau where q does, of many
 /// states in the same layout); otherwise outputs overlap no input.
 class FastModel {
@@ -71,6 +73,10 @@ class FastModel {
 
   /// Whether friction depends on the gravity torques, and so on q.
   bool frictionDependsOnLoad() const;
+
+  /// Number of links, which regressor() has ten columns each of: of a chain n, of a mechanism linkCount()
+  /// of its branches.
+  Eigen::Index linkCount() const;
 
   /// The instruction set in use.
   std::string instructionSet() const;
@@ -102,7 +108,7 @@ class FastModel {
   /// solves the equation, but describes no motion of a robot. A joint that moves neither mass nor rotor
   /// inertia (H singular) gives infinity or NaN, no error.
   void forwardDynamics(const double* q, const double* qd, const double* tau, double* qdd) const;
-  /// `Y(q, qd, qdd)` of regressor.hpp, n x 10 n: of rigid bodies, whatever parameters and friction
+  /// `Y(q, qd, qdd)` of regressor.hpp, n x 10 linkCount(): of rigid bodies, whatever parameters and friction
   /// the model has. Entry (i, j) at Y[i + j * outer_step].
   void regressor(const double* q, const double* qd, const double* qdd, double* Y,
                  std::ptrdiff_t outer_step) const;
@@ -148,11 +154,11 @@ class FastModel {
   /// 6 x n each.
   void tipJacobianBatch(ConstStates q, StridedMatrices J) const;
   void tipJacobianDerivativeBatch(ConstStates q, ConstStates qd, StridedMatrices dJ) const;
-  /// As regressor(); n x 10 n each.
+  /// As regressor(); n x 10 linkCount() each. Allocates where the robot is a mechanism.
   void regressorBatch(ConstStates q, ConstStates qd, ConstStates qdd, StridedMatrices Y) const;
   /// Adds samples to the Gram matrices of the regressor's rows [regressor_gram.hpp].
   ///
-  /// @throws ModelError  another number of joints, samples or columns.
+  /// @throws ModelError  another number of joints, samples or columns; a mechanism.
   void addToGram(const GramSamples& samples, RegressorGram& gram) const;
   /// @}
 

@@ -23,12 +23,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/friction.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/owned.hpp"
 
 namespace chain_dynamics {
@@ -52,7 +54,18 @@ struct Model {
   /// A chain as it is: one parameter set, no friction.
   explicit Model(Chain chain_of_model) : chain(std::move(chain_of_model)), name(chain.name()) {}
 
+  /// A mechanism as it is: no friction.
+  explicit Model(Mechanism mechanism)
+      : chain(std::move(mechanism.coordinates)),
+        branches(std::move(mechanism.branches)),
+        name(chain.name()) {}
+
   Chain chain;
+
+  /// Empty: the robot is the chain. Otherwise it is the sum of these branches, and the chain only has
+  /// name, type and limits of each coordinate [mechanism.hpp]: n is the number of coordinates, and
+  /// there are no row parameters and gravity parameters.
+  std::vector<Branch> branches = {};
 
   /// Empty: chain.links() for every row of H, C qd, g. Otherwise n sets of n links, and row j is
   /// that of a chain with set j; chain.links() are then without meaning.
@@ -96,7 +109,7 @@ struct Model {
   bool inertiaIsPhysical() const;
 };
 
-/// Rejects a model whose parts don't fit together: wrong sizes, non-finite numbers, gains <= 0,
+/// Rejects a model whose parts don't fit together [also checkMechanism()]: wrong sizes, non-finite numbers, gains <= 0,
 /// coefficients that a friction law can't have.
 ///
 /// Call it once where a model was made by hand; the functions below only assert sizes.
@@ -107,9 +120,12 @@ void checkModel(const Model& model);
 /// The model with a rigid body welded to its tip: the body is added to the last link of the chain,
 /// of every row's parameters and of those of gravity.
 ///
-/// @param body  in the frame of model.chain.tip().
+/// @param body  in the frame of model.chain.tip(), or of the tip of that branch.
 /// @throws ModelError  a body with which the last link can't be: mass below zero, a NaN.
-Model withBodyAtTip(const Model& model, const LinkParameters& body);
+Model withBodyAtTip(const Model& model, const LinkParameters& body, std::size_t branch = 0);
+
+/// The same model under another gravity [Chain::withGravity()].
+Model withGravity(const Model& model, const Eigen::Vector3d& gravity);
 
 using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
 using VectorRef = Eigen::Ref<Eigen::VectorXd>;

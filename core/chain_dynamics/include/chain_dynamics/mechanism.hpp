@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// A tree of rigid bodies whose joints follow its coordinates, as constant data: two arms on a torso,
+/// a gripper whose second finger mimics the first.
+///
+///     const RobotDescription robot = robotFromUrdf(urdf_xml);
+///     const Model torso{mechanismFromRobot(robot, {}, {"left_tool", "right_tool"})};
+///     torques(torso, q, qd, qdd, tau);                       // model.hpp; FastModel takes it, too
+///
+/// Energy is the sum of the energies of all links. So a tree is a **sum of chains**, its branches: one
+/// from the root to each tip, where a link that several branches move has mass in the first of them
+/// only. The joints of branch b stand at `q_b = S_b q + s_b`, where q are the coordinates: a joint is a
+/// coordinate itself, or follows some (`<mimic>`: a multiplier and an offset). By the chain rule
+///
+///     tau = sum of S_b' tau_b(q_b, S_b qd, S_b qdd)      H = sum of S_b' H_b S_b
+///
+/// and likewise every other term of the dynamics. Rotor inertia stands in the branches, as mass does.
+/// Friction, limits and types are of coordinates.
+
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/robot_description.hpp"
+#include "chain_dynamics/urdf.hpp"
+
+namespace chain_dynamics {
+inline namespace v2 {
+
+/// An entry of S that isn't zero: the joint moves by `factor` times the coordinate.
+struct Follow {
+  Eigen::Index joint = 0;       ///< of the branch
+  Eigen::Index coordinate = 0;  ///< of the mechanism
+  double factor = 1;
+};
+
+/// One of the chains whose sum a mechanism is.
+struct Branch {
+  std::string tip;        ///< name of the link whose frame is chain.tip()
+  Chain chain;            ///< without the mass and rotors of links in earlier branches
+  std::vector<Follow> S;  ///< each entry once
+  std::vector<double> s;  ///< positions of its joints where all coordinates are zero; rad; m
+  std::vector<Eigen::Index> link;  ///< of its joints: number of the link that each moves, from 0
+};
+
+/// Coordinates, and the branches whose joints follow them.
+struct Mechanism {
+  /// One joint per coordinate, with name, type and limits; its rotor inertia, damping and friction are
+  /// those of all joints that follow it, seen from the coordinate. Without branches, this is the robot.
+  /// With branches, placements and links are without meaning.
+  Chain coordinates;
+
+  /// Joints of the same name are one joint: it moves one link, in the same way in all branches.
+  std::vector<Branch> branches;
+};
+
+/// Most coordinates; joints of one branch; joints, each counted once.
+constexpr std::size_t kMostCoordinates = 64;
+constexpr std::size_t kMostBranchJoints = 64;
+constexpr std::size_t kMostMovingJoints = 128;
+
+/// Number of links of all branches, each counted once.
+Eigen::Index linkCount(const std::vector<Branch>& branches);
+
+/// Rejects branches that don't fit the coordinates: wrong sizes, numbers that aren't finite, too many
+/// joints, or a coordinate that moves no joint of its own (S without full column rank).
+///
+/// @throws ModelError  naming branch, joint or coordinate.
+void checkMechanism(const Mechanism& mechanism);
+
+/// The mechanism between root and tips of a robot description.
+///
+/// Joints between root and tips move, each follows its `<mimic>`; all others are held or lumped as in
+/// chainFromRobot(). Coordinates are the joints that mimic no other, in the order of the description.
+/// Limits of a joint that mimics restrict its coordinate. One tip without a joint that mimics is the
+/// chain of chainFromRobot(), without branches.
+///
+/// @param options  `tip` isn't read.
+/// @param tips     links, the first of which is the tip where only one is asked for. Empty: the tip of
+///     chainFromRobot(). "*": all leaves below root that a joint moves, in the order of the
+///     description; of leaves that the same joint moves, the one with most joints (fixed ones too)
+///     above it, and none where a joint beyond it leads to another leaf.
+/// @throws ModelError  as chainFromRobot(), and naming tip or joint: no such tip, a tip twice, a tip
+///     that no joint moves, a `<mimic>` that follows itself or a joint that isn't between root and tips.
+/// Threads: safe.
+Mechanism mechanismFromRobot(const RobotDescription& robot, const UrdfOptions& options,
+                             const std::vector<std::string>& tips);
+
+}  // namespace v2
+}  // namespace chain_dynamics

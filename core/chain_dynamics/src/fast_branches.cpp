@@ -1,0 +1,660 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "fast_branches.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+#include "chain_dynamics/friction.hpp"
+#include "chain_dynamics/scratch.hpp"
+
+namespace chain_dynamics {
+inline namespace v2 {
+namespace {
+namespace kernel_sums {  // apart from functions of other sources, which have the same names
+
+using Eigen::Index;
+using fast::Matrices;
+using fast::Robot;
+using fast::Samples;
+
+constexpr int kMost = FastModel::kMaxJoints;
+
+/// Numbers of as many states as are computed at a time: 8 KiB.
+constexpr std::ptrdiff_t kBlockNumbers = 1024;
+constexpr std::ptrdiff_t kBlockStates = 64;
+
+const FastBranches& branchesOf(const Robot& robot) {
+  return static_cast<const FastBranches&>(robot);
+}
+
+struct Numbers {
+  double numbers[kMost];
+};
+
+using Map = Eigen::Map<Eigen::VectorXd>;
+using ConstMap = Eigen::Map<const Eigen::VectorXd>;
+using MatrixMap = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+
+Index jointsOf(const FastBranch& b) { return b.branch.chain.jointCount(); }
+
+// ---------------------------------------------------------------------------------------------
+// One state
+
+/// `S x`: velocities or accelerations of a branch's joints.
+const double* motionOf(const FastBranch& b, const double* x, Numbers& memory) {
+  double* const to = memory.numbers;
+  if (!b.coordinates.empty()) {
+    for (std::size_t i = 0; i < b.coordinates.size(); ++i) to[i] = x[b.coordinates[i]];
+    return to;
+  }
+  std::fill_n(to, jointsOf(b), 0.0);
+  for (const Follow& entry : b.branch.S) to[entry.joint] += entry.factor * x[entry.coordinate];
+  return to;
+}
+
+/// `S q + s`.
+const double* positionsOf(const FastBranch& b, const double* q, Numbers& memory) {
+  motionOf(b, q, memory);
+  if (b.coordinates.empty()) {
+    for (std::size_t i = 0; i < b.branch.s.size(); ++i) memory.numbers[i] += b.branch.s[i];
+  }
+  return memory.numbers;
+}
+
+/// `sum += S' of_branch`.
+void add(const FastBranch& b, const double* of_branch, double* sum) {
+  if (!b.coordinates.empty()) {
+    for (std::size_t i = 0; i < b.coordinates.size(); ++i) sum[b.coordinates[i]] += of_branch[i];
+    return;
+  }
+  for (const Follow& entry : b.branch.S) {
+    sum[entry.coordinate] += entry.factor * of_branch[entry.joint];
+  }
+}
+
+/// `sum += S' of_branch S`, of a matrix whose columns stand one after the other.
+void addMatrix(const FastBranch& b, const double* of_branch, const Matrices& sum) {
+  const Index m = jointsOf(b);
+  if (!b.coordinates.empty()) {
+    for (Index j = 0; j < m; ++j) {
+      const double* const from = of_branch + j * m;
+      double* const to = sum.data + b.coordinates[static_cast<std::size_t>(j)] * sum.column_step;
+      for (Index i = 0; i < m; ++i) {
+        to[b.coordinates[static_cast<std::size_t>(i)] * sum.row_step] += from[i];
+      }
+    }
+    return;
+  }
+  for (const Follow& column : b.branch.S) {
+    const double* const from = of_branch + column.joint * m;
+    double* const to = sum.data + column.coordinate * sum.column_step;
+    for (const Follow& row : b.branch.S) {
+      to[row.coordinate * sum.row_step] += row.factor * column.factor * from[row.joint];
+    }
+  }
+}
+
+void setZero(const Matrices& matrix, Index rows, Index columns) {
+  for (Index j = 0; j < columns; ++j) {
+    for (Index i = 0; i < rows; ++i) {
+      matrix.data[i * matrix.row_step + j * matrix.column_step] = 0;
+    }
+  }
+}
+
+void friction(const Robot& robot, int /*structure*/, const double* q, const double* qd, double* f) {
+  const FastBranches& all = branchesOf(robot);
+  if (all.friction_alone) return all.friction_alone->frictionVector(q, qd, f);
+  const Index n = robot.joints;
+  Numbers result;  // f may be qd
+  const ConstMap position(q, q != nullptr ? n : 0);
+  chain_dynamics::frictionVector(*all.model, position, ConstMap(qd, n), Map(result.numbers, n));
+  std::copy_n(result.numbers, n, f);
+}
+
+void torques(const Robot& robot, int structure, const double* q, const double* qd,
+             const double* qdd, double* tau) {
+  const FastBranches& all = branchesOf(robot);
+  Numbers q_b, qd_b, qdd_b, tau_b, sum;
+  if (all.model->friction.empty()) {
+    std::fill_n(sum.numbers, robot.joints, 0.0);
+  } else {
+    friction(robot, structure, q, qd, sum.numbers);
+  }
+  for (const FastBranch& b : all.branches) {
+    b.fast->torques(positionsOf(b, q, q_b), motionOf(b, qd, qd_b), motionOf(b, qdd, qdd_b),
+                    tau_b.numbers);
+    add(b, tau_b.numbers, sum.numbers);
+  }
+  std::copy_n(sum.numbers, robot.joints, tau);
+}
+
+void coriolis(const Robot& robot, int /*structure*/, const double* q, const double* qd, double* c) {
+  Numbers q_b, qd_b, c_b, sum{};
+  for (const FastBranch& b : branchesOf(robot).branches) {
+    b.fast->coriolisVector(positionsOf(b, q, q_b), motionOf(b, qd, qd_b), c_b.numbers);
+    add(b, c_b.numbers, sum.numbers);
+  }
+  std::copy_n(sum.numbers, robot.joints, c);
+}
+
+void gravity(const Robot& robot, int /*structure*/, const double* q, double* g) {
+  Numbers q_b, g_b, sum{};
+  for (const FastBranch& b : branchesOf(robot).branches) {
+    b.fast->gravityVector(positionsOf(b, q, q_b), g_b.numbers);
+    add(b, g_b.numbers, sum.numbers);
+  }
+  std::copy_n(sum.numbers, robot.joints, g);
+}
+
+/// The sum of a matrix that `compute` gives of each branch.
+template <class Compute>
+void sumOfMatrices(const Robot& robot, const double* q, const Matrices& sum,
+                   const Compute& compute) {
+  Numbers q_b;
+  double of_branch[kMost * kMost];
+  setZero(sum, robot.joints, robot.joints);
+  for (const FastBranch& b : branchesOf(robot).branches) {
+    compute(b, positionsOf(b, q, q_b), of_branch);
+    addMatrix(b, of_branch, sum);
+  }
+}
+
+void inertia(const Robot& robot, int /*structure*/, const double* q, Matrices H) {
+  sumOfMatrices(robot, q, H, [](const FastBranch& b, const double* q_b, double* H_b) {
+    b.fast->inertiaMatrix(q_b, H_b, jointsOf(b));
+  });
+}
+
+void components(const Robot& robot, int structure, const double* q, const double* qd, Matrices H,
+                double* c, double* g) {
+  Numbers of_gravity;  // c may stand where an input does
+  inertia(robot, structure, q, H);
+  gravity(robot, structure, q, of_gravity.numbers);
+  coriolis(robot, structure, q, qd, c);
+  std::copy_n(of_gravity.numbers, robot.joints, g);
+}
+
+/// x = H^-1 x for symmetric H, whose lower triangle is overwritten: H = L' D L from the last row to the
+/// first, as in fast/linear_solve.hpp.
+void solveSymmetric(Index n, double* H, double* x) {
+  for (Index k = n - 1; k >= 0; --k) {
+    double* const row_k = H + k * n;
+    const double inverse_D = 1 / row_k[k];
+    for (Index i = 0; i < k; ++i) {
+      const double factor = row_k[i] * inverse_D;
+      for (Index j = 0; j <= i; ++j) H[i * n + j] -= factor * row_k[j];
+      x[i] -= factor * x[k];
+    }
+    row_k[k] = inverse_D;
+  }
+  for (Index k = 0; k < n; ++k) {
+    for (Index j = 0; j < k; ++j) x[k] -= H[k * n + j] * x[j];
+    x[k] *= H[k * n + k];
+  }
+}
+
+void forwardDynamics(const Robot& robot, int structure, const double* q, const double* qd,
+                     const double* tau, double* qdd) {
+  const Index n = robot.joints;
+  const Numbers at_rest{};
+  Numbers left;  // of the torques: what accelerates
+  double H[kMost * kMost];
+  torques(robot, structure, q, qd, at_rest.numbers, left.numbers);
+  for (Index j = 0; j < n; ++j) left.numbers[j] = tau[j] - left.numbers[j];
+  inertia(robot, structure, q, {H, 1, n, 0});
+  solveSymmetric(n, H, left.numbers);
+  std::copy_n(left.numbers, n, qdd);
+}
+
+void regressor(const Robot& robot, const double* q, const double* qd, const double* qdd, double* Y,
+               std::ptrdiff_t outer_step) {
+  constexpr Index kOnStack = Index{10} * 32 * 32;
+  Numbers q_b, qd_b, qdd_b;
+  const FastBranches& all = branchesOf(robot);
+  setZero({Y, 1, outer_step, 0}, robot.joints, 10 * Index{all.links});
+  for (const FastBranch& b : all.branches) {
+    const Index m = jointsOf(b);
+    Scratch<double, kOnStack> Y_b(10 * m * m);
+    b.fast->regressor(positionsOf(b, q, q_b), motionOf(b, qd, qd_b), motionOf(b, qdd, qdd_b),
+                      &Y_b[0], m);
+    for (const int i : b.own) {
+      const Index link = b.branch.link[static_cast<std::size_t>(i)];
+      for (Index column = 0; column < 10; ++column) {
+        add(b, &Y_b[(10 * i + column) * m], Y + (10 * link + column) * outer_step);
+      }
+    }
+  }
+}
+
+/// Of all but friction. A function of its own, whose stack is free before that of friction is needed.
+[[gnu::noinline]] void torqueDerivativesOfBodies(const FastBranches& all, const double* q,
+                                                 const double* qd, const double* qdd,
+                                                 const Matrices (&sums)[3]) {
+  Numbers q_b, qd_b, qdd_b;
+  double of_branch[3][kMost * kMost];
+  for (const Matrices& sum : sums) setZero(sum, all.joints, all.joints);
+  for (const FastBranch& b : all.branches) {
+    b.fast->torqueDerivatives(positionsOf(b, q, q_b), motionOf(b, qd, qd_b),
+                              motionOf(b, qdd, qdd_b), of_branch[0], of_branch[1], of_branch[2],
+                              jointsOf(b));
+    for (int k = 0; k < 3; ++k) addMatrix(b, of_branch[k], sums[k]);
+  }
+}
+
+void torqueDerivatives(const Robot& robot, int /*structure*/, const double* q, const double* qd,
+                       const double* qdd, double* by_q, double* by_qd, double* by_qdd,
+                       std::ptrdiff_t outer_step) {
+  const Index n = robot.joints;
+  const FastBranches& all = branchesOf(robot);
+  torqueDerivativesOfBodies(
+      all, q, qd, qdd,
+      {{by_q, 1, outer_step, 0}, {by_qd, 1, outer_step, 0}, {by_qdd, 1, outer_step, 0}});
+  chain_dynamics::addFrictionDerivatives(*all.model, ConstMap(q, n), ConstMap(qd, n),
+                                         MatrixMap(by_q, n, n, Eigen::OuterStride<>(outer_step)),
+                                         MatrixMap(by_qd, n, n, Eigen::OuterStride<>(outer_step)));
+}
+
+void coriolisMatrix(const Robot& robot, int /*structure*/, const double* q, const double* qd,
+                    double* C, std::ptrdiff_t outer_step) {
+  Numbers qd_b;
+  const auto compute = [&](const FastBranch& b, const double* q_b, double* C_b) {
+    b.fast->coriolisMatrix(q_b, motionOf(b, qd, qd_b), C_b, jointsOf(b));
+  };
+  sumOfMatrices(robot, q, {C, 1, outer_step, 0}, compute);
+}
+
+// The tip is that of the first branch.
+
+void tipPose(const Robot& robot, int /*structure*/, const double* q, double* R, double* p) {
+  Numbers q_b;
+  const FastBranch& b = branchesOf(robot).branches.front();
+  b.fast->tipPose(positionsOf(b, q, q_b), R, p);
+}
+
+/// `J_b S`.
+void toCoordinates(const FastBranch& b, Index n, const double* J_b, double* J,
+                   std::ptrdiff_t outer_step) {
+  setZero({J, 1, outer_step, 0}, 6, n);
+  for (const Follow& entry : b.branch.S) {
+    for (Index i = 0; i < 6; ++i) {
+      J[entry.coordinate * outer_step + i] += entry.factor * J_b[6 * entry.joint + i];
+    }
+  }
+}
+
+void tipJacobian(const Robot& robot, int /*structure*/, const double* q, double* J,
+                 std::ptrdiff_t outer_step) {
+  Numbers q_b;
+  double J_b[6 * kMost];
+  const FastBranch& b = branchesOf(robot).branches.front();
+  b.fast->tipJacobian(positionsOf(b, q, q_b), J_b, 6);
+  toCoordinates(b, robot.joints, J_b, J, outer_step);
+}
+
+void tipJacobianDerivative(const Robot& robot, int /*structure*/, const double* q, const double* qd,
+                           double* dJ, std::ptrdiff_t outer_step) {
+  Numbers q_b, qd_b;
+  double dJ_b[6 * kMost];
+  const FastBranch& b = branchesOf(robot).branches.front();
+  b.fast->tipJacobianDerivative(positionsOf(b, q, q_b), motionOf(b, qd, qd_b), dJ_b, 6);
+  toCoordinates(b, robot.joints, dJ_b, dJ, outer_step);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Many states
+
+/// Numbers of a block of states: joint j of state k at [j kBlockStates + k].
+struct Block {
+  double numbers[kBlockNumbers];
+};
+
+/// States that are computed at a time: fewer where a block of each joint would take more memory.
+std::ptrdiff_t blockStates(const Robot& robot) {
+  Index most = robot.joints;
+  for (const FastBranch& b : branchesOf(robot).branches) most = std::max(most, jointsOf(b));
+  return std::min<std::ptrdiff_t>(kBlockStates, kBlockNumbers / most / 8 * 8);
+}
+
+/// The states of a block of numbers, which don't stand in caller's memory.
+States statesOf(Block& block, Index joints, Index count, std::ptrdiff_t step) {
+  return {block.numbers, joints, count, step, 1};
+}
+
+/// `S x` of `count` states from the first on, and s where x are positions.
+ConstStates motionOf(const FastBranch& b, const Samples& x, std::ptrdiff_t first, Index count,
+                     std::ptrdiff_t step, bool are_positions, Block& memory) {
+  const States to = statesOf(memory, jointsOf(b), count, step);
+  for (Index i = 0; i < to.joints; ++i) {
+    const double start = are_positions ? b.branch.s[static_cast<std::size_t>(i)] : 0;
+    if (b.coordinates.empty()) std::fill_n(&to(i, 0), count, start);
+  }
+  for (const Follow& entry : b.branch.S) {
+    const double* const from = x.data + entry.coordinate * x.joint_step + first * x.state_step;
+    double* const joint = &to(entry.joint, 0);
+    if (b.coordinates.empty()) {
+      for (Index k = 0; k < count; ++k) joint[k] += entry.factor * from[k * x.state_step];
+    } else {
+      for (Index k = 0; k < count; ++k) joint[k] = from[k * x.state_step];
+    }
+  }
+  return to;
+}
+
+/// `sum += S' of_branch`.
+void add(const FastBranch& b, const States& of_branch, const States& sum) {
+  for (const Follow& entry : b.branch.S) {
+    const double* const from = &of_branch(entry.joint, 0);
+    double* const to = &sum(entry.coordinate, 0);
+    if (b.coordinates.empty()) {
+      for (Index k = 0; k < sum.count; ++k) to[k] += entry.factor * from[k];
+    } else {
+      for (Index k = 0; k < sum.count; ++k) to[k] += from[k];
+    }
+  }
+}
+
+void write(const States& block, const Samples& to, std::ptrdiff_t first) {
+  for (Index j = 0; j < block.joints; ++j) {
+    double* const joint = to.data + j * to.joint_step + first * to.state_step;
+    for (Index k = 0; k < block.count; ++k) joint[k * to.state_step] = block(j, k);
+  }
+}
+
+/// A block of the samples, in place.
+ConstStates part(const Samples& x, Index joints, std::ptrdiff_t first, Index count) {
+  return {x.data + first * x.state_step, joints, count, x.joint_step, x.state_step};
+}
+
+/// Adds the sum over the branches of what compute(branch, positions and motions of its joints, result)
+/// gives, of the states from `first` on.
+///
+/// @param x  positions, then velocities and accelerations where `compute` reads them.
+template <std::size_t kCount, class Compute>
+void addBranches(const Robot& robot, const Samples (&x)[kCount], std::ptrdiff_t first,
+                 const States& sum, const Compute& compute) {
+  Block memory[kCount], result;
+  const std::ptrdiff_t step = sum.joint_step;
+  for (const FastBranch& b : branchesOf(robot).branches) {
+    const ConstStates none(nullptr, 0, 0, 1, 0);
+    ConstStates x_b[] = {none, none, none};
+    for (std::size_t i = 0; i < kCount; ++i) {
+      x_b[i] = motionOf(b, x[i], first, sum.count, step, i == 0, memory[i]);
+    }
+    const States of_branch = statesOf(result, jointsOf(b), sum.count, step);
+    compute(*b.fast, x_b, of_branch);
+    add(b, of_branch, sum);
+  }
+}
+
+/// The sum alone, of all states.
+template <std::size_t kCount, class Compute>
+void sumOfBranches(const Robot& robot, std::ptrdiff_t states, const Samples (&x)[kCount],
+                   const Samples& to, const Compute& compute) {
+  const std::ptrdiff_t size = blockStates(robot);
+  Block memory;
+  for (std::ptrdiff_t first = 0; first < states; first += size) {
+    const States sum = statesOf(memory, robot.joints, std::min(size, states - first), size);
+    std::fill_n(memory.numbers, sum.joints * size, 0.0);
+    addBranches(robot, x, first, sum, compute);
+    write(sum, to, first);
+  }
+}
+
+/// The states from `first` on.
+Samples from(const Samples& x, std::ptrdiff_t first) {
+  return {x.data + first * x.state_step, x.joint_step, x.state_step};
+}
+
+void frictionMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                  Samples f) {
+  const FastBranches& all = branchesOf(robot);
+  const Index n = robot.joints;
+  if (all.friction_alone) {
+    all.friction_alone->frictionVectorBatch(part(q, n, 0, states), part(qd, n, 0, states),
+                                            {f.data, n, states, f.joint_step, f.state_step});
+    return;
+  }
+  Numbers q_k{}, qd_k, f_k;
+  for (std::ptrdiff_t k = 0; k < states; ++k) {
+    for (Index j = 0; j < n; ++j) {
+      if (robot.load_friction) q_k.numbers[j] = q.data[j * q.joint_step + k * q.state_step];
+      qd_k.numbers[j] = qd.data[j * qd.joint_step + k * qd.state_step];
+    }
+    friction(robot, structure, q_k.numbers, qd_k.numbers, f_k.numbers);
+    for (Index j = 0; j < n; ++j) f.data[j * f.joint_step + k * f.state_step] = f_k.numbers[j];
+  }
+}
+
+void torquesMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                 Samples qdd, Samples tau) {
+  const auto compute = [](const FastModel& fast, const ConstStates* x, const States& tau_b) {
+    fast.torquesBatch(x[0], x[1], x[2], tau_b);
+  };
+  if (branchesOf(robot).model->friction.empty()) {
+    return sumOfBranches(robot, states, {q, qd, qdd}, tau, compute);
+  }
+  const std::ptrdiff_t size = blockStates(robot);
+  Block memory;
+  for (std::ptrdiff_t first = 0; first < states; first += size) {
+    const States sum = statesOf(memory, robot.joints, std::min(size, states - first), size);
+    frictionMany(robot, structure, sum.count, from(q, first), from(qd, first), {sum.data, size, 1});
+    addBranches(robot, {q, qd, qdd}, first, sum, compute);
+    write(sum, tau, first);
+  }
+}
+
+void coriolisMany(const Robot& robot, int /*structure*/, std::ptrdiff_t states, Samples q,
+                  Samples qd, Samples c) {
+  sumOfBranches(robot, states, {q, qd}, c,
+                [](const FastModel& fast, const ConstStates* x, const States& c_b) {
+                  fast.coriolisVectorBatch(x[0], x[1], c_b);
+                });
+}
+
+void gravityMany(const Robot& robot, int /*structure*/, std::ptrdiff_t states, Samples q,
+                 Samples g) {
+  sumOfBranches(robot, states, {q}, g,
+                [](const FastModel& fast, const ConstStates* x, const States& g_b) {
+                  fast.gravityVectorBatch(x[0], g_b);
+                });
+}
+
+// ---------------------------------------------------------------------------------------------
+// Many states, one after the other
+
+/// The numbers of state k.
+const double* stateOf(const Samples& x, Index joints, std::ptrdiff_t k, Numbers& memory) {
+  for (Index j = 0; j < joints; ++j) {
+    memory.numbers[j] = x.data[j * x.joint_step + k * x.state_step];
+  }
+  return memory.numbers;
+}
+
+Matrices ofState(const Matrices& all, std::ptrdiff_t k) {
+  return {all.data + k * all.state_step, all.row_step, all.column_step, all.state_step};
+}
+
+/// Copies columns that stand one after the other.
+void write(const double* columns, Index rows, Index count, const Matrices& to) {
+  for (Index j = 0; j < count; ++j) {
+    for (Index i = 0; i < rows; ++i) {
+      to.data[i * to.row_step + j * to.column_step] = columns[j * rows + i];
+    }
+  }
+}
+
+void inertiaMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Matrices H) {
+  Numbers q_k{};
+  for (std::ptrdiff_t k = 0; k < states; ++k) {
+    inertia(robot, structure, stateOf(q, robot.joints, k, q_k), ofState(H, k));
+  }
+}
+
+void componentsMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                    Matrices H, Samples c, Samples g) {
+  if (H.data != nullptr) inertiaMany(robot, structure, states, q, H);
+  const std::ptrdiff_t size = blockStates(robot);
+  Block of_coriolis, of_gravity;  // c and g may stand where inputs do
+  for (std::ptrdiff_t first = 0; first < states; first += size) {
+    const std::ptrdiff_t count = std::min(size, states - first);
+    coriolisMany(robot, structure, count, from(q, first), from(qd, first),
+                 {of_coriolis.numbers, size, 1});
+    gravityMany(robot, structure, count, from(q, first), {of_gravity.numbers, size, 1});
+    write(statesOf(of_coriolis, robot.joints, count, size), c, first);
+    write(statesOf(of_gravity, robot.joints, count, size), g, first);
+  }
+}
+
+void forwardDynamicsMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
+                         Samples qd, Samples tau, Samples qdd) {
+  const Index n = robot.joints;
+  Numbers q_k{}, qd_k{}, tau_k{}, qdd_k{};
+  for (std::ptrdiff_t k = 0; k < states; ++k) {
+    forwardDynamics(robot, structure, stateOf(q, n, k, q_k), stateOf(qd, n, k, qd_k),
+                    stateOf(tau, n, k, tau_k), qdd_k.numbers);
+    for (Index j = 0; j < n; ++j) {
+      qdd.data[j * qdd.joint_step + k * qdd.state_step] = qdd_k.numbers[j];
+    }
+  }
+}
+
+void regressorMany(const Robot& robot, std::ptrdiff_t states, Samples q, Samples qd, Samples qdd,
+                   Matrices Y) {
+  const Index n = robot.joints;
+  const Index columns = 10 * Index{branchesOf(robot).links};
+  std::unique_ptr<double[]> memory(new double[static_cast<std::size_t>(n * columns)]);
+  Numbers q_k{}, qd_k{}, qdd_k{};
+  for (std::ptrdiff_t k = 0; k < states; ++k) {
+    regressor(robot, stateOf(q, n, k, q_k), stateOf(qd, n, k, qd_k), stateOf(qdd, n, k, qdd_k),
+              memory.get(), n);
+    write(memory.get(), n, columns, ofState(Y, k));
+  }
+}
+
+void torqueDerivativesMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
+                           Samples qd, Samples qdd, Matrices by_q, Matrices by_qd,
+                           Matrices by_qdd) {
+  const Index n = robot.joints;
+  Numbers q_k{}, qd_k{}, qdd_k{};
+  double matrices[3][fast::kPackedMatrixJoints * fast::kPackedMatrixJoints];
+  for (std::ptrdiff_t k = 0; k < states; ++k) {
+    torqueDerivatives(robot, structure, stateOf(q, n, k, q_k), stateOf(qd, n, k, qd_k),
+                      stateOf(qdd, n, k, qdd_k), matrices[0], matrices[1], matrices[2], n);
+    write(matrices[0], n, n, ofState(by_q, k));
+    write(matrices[1], n, n, ofState(by_qd, k));
+    write(matrices[2], n, n, ofState(by_qdd, k));
+  }
+}
+
+void coriolisMatrixMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
+                        Samples qd, Matrices C) {
+  const Index n = robot.joints;
+  Numbers q_k{}, qd_k{};
+  double matrix[fast::kPackedMatrixJoints * fast::kPackedMatrixJoints];
+  for (std::ptrdiff_t k = 0; k < states; ++k) {
+    coriolisMatrix(robot, structure, stateOf(q, n, k, q_k), stateOf(qd, n, k, qd_k), matrix, n);
+    write(matrix, n, n, ofState(C, k));
+  }
+}
+
+void tipPoseMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Matrices R,
+                 Samples p) {
+  Numbers q_k{};
+  double R_k[9], p_k[3];
+  for (std::ptrdiff_t k = 0; k < states; ++k) {
+    tipPose(robot, structure, stateOf(q, robot.joints, k, q_k), R_k, p_k);
+    write(R_k, 3, 3, ofState(R, k));
+    for (Index i = 0; i < 3; ++i) p.data[i * p.joint_step + k * p.state_step] = p_k[i];
+  }
+}
+
+void tipJacobianMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
+                     Matrices J) {
+  Numbers q_k{};
+  double J_k[6 * kMost];
+  for (std::ptrdiff_t k = 0; k < states; ++k) {
+    tipJacobian(robot, structure, stateOf(q, robot.joints, k, q_k), J_k, 6);
+    write(J_k, 6, robot.joints, ofState(J, k));
+  }
+}
+
+void tipJacobianDerivativeMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
+                               Samples qd, Matrices dJ) {
+  Numbers q_k{}, qd_k{};
+  double dJ_k[6 * kMost];
+  for (std::ptrdiff_t k = 0; k < states; ++k) {
+    tipJacobianDerivative(robot, structure, stateOf(q, robot.joints, k, q_k),
+                          stateOf(qd, robot.joints, k, qd_k), dJ_k, 6);
+    write(dJ_k, 6, robot.joints, ofState(dJ, k));
+  }
+}
+
+int structureOf(const Robot& /*robot*/) { return 0; }
+
+/// Entry (row, column) of S is one, and it is the only one of its row; s is zero.
+bool isSelection(const Branch& branch) {
+  const auto m = static_cast<std::size_t>(branch.chain.jointCount());
+  std::vector<int> entries(m, 0);
+  for (const Follow& entry : branch.S) ++entries[static_cast<std::size_t>(entry.joint)];
+  return std::all_of(entries.begin(), entries.end(), [](int count) { return count == 1; }) &&
+         std::all_of(branch.S.begin(), branch.S.end(),
+                     [](const Follow& entry) { return entry.factor == 1; }) &&
+         std::all_of(branch.s.begin(), branch.s.end(), [](double s) { return s == 0; });
+}
+
+}  // namespace kernel_sums
+}  // namespace
+
+FastBranch::FastBranch(const Branch& of, std::unique_ptr<const FastModel> made)
+    : branch(of), fast(std::move(made)) {
+  if (!kernel_sums::isSelection(of)) return;
+  coordinates.resize(of.S.size());
+  for (const Follow& entry : of.S) {
+    coordinates[static_cast<std::size_t>(entry.joint)] = static_cast<int>(entry.coordinate);
+  }
+}
+
+fast::Kernels branchKernels(const char* instruction_set) {
+  using namespace kernel_sums;  // NOLINT(google-build-using-namespace)
+  return {instruction_set,
+          structureOf,
+          kernel_sums::torques,
+          coriolis,
+          gravity,
+          inertia,
+          components,
+          kernel_sums::friction,
+          kernel_sums::forwardDynamics,
+          kernel_sums::regressor,
+          kernel_sums::torqueDerivatives,
+          kernel_sums::coriolisMatrix,
+          kernel_sums::tipPose,
+          kernel_sums::tipJacobian,
+          kernel_sums::tipJacobianDerivative};
+}
+
+fast::ManyKernels manyBranchKernels() {
+  using namespace kernel_sums;  // NOLINT(google-build-using-namespace)
+  return {torquesMany,
+          coriolisMany,
+          gravityMany,
+          inertiaMany,
+          componentsMany,
+          frictionMany,
+          forwardDynamicsMany,
+          regressorMany,
+          torqueDerivativesMany,
+          coriolisMatrixMany,
+          tipPoseMany,
+          tipJacobianMany,
+          tipJacobianDerivativeMany,
+          nullptr,
+          nullptr};
+}
+
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "model_branches.hpp"
+
+#include <cstddef>
+
+#include "chain_dynamics/coriolis_matrix.hpp"
+#include "chain_dynamics/coriolis_vector.hpp"
+#include "chain_dynamics/energy.hpp"
+#include "chain_dynamics/gravity_vector.hpp"
+#include "chain_dynamics/inertia_matrix.hpp"
+#include "chain_dynamics/mechanism.hpp"
+#include "chain_dynamics/torque_derivatives.hpp"
+#include "chain_dynamics/torques.hpp"
+
+namespace chain_dynamics {
+inline namespace v2 {
+namespace sums {
+namespace {
+
+// Of branches, whose number of joints is limited: on the stack.
+using BranchVector =
+    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostBranchJoints, 1>;
+using BranchMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                                   kMostBranchJoints, kMostBranchJoints>;
+
+/// `S x`: velocities of the joints of a branch, or accelerations.
+BranchVector motionOf(const Branch& branch, const ConstVectorRef& x) {
+  BranchVector result = BranchVector::Zero(branch.chain.jointCount());
+  for (const Follow& entry : branch.S) result[entry.joint] += entry.factor * x[entry.coordinate];
+  return result;
+}
+
+/// `S q + s`.
+BranchVector positionsOf(const Branch& branch, const ConstVectorRef& q) {
+  return motionOf(branch, q) +
+         Eigen::Map<const Eigen::VectorXd>(branch.s.data(), branch.chain.jointCount());
+}
+
+/// `result += S' of_branch`.
+void add(const Branch& branch, const BranchVector& of_branch, Eigen::Ref<Eigen::VectorXd> result) {
+  for (const Follow& entry : branch.S) {
+    result[entry.coordinate] += entry.factor * of_branch[entry.joint];
+  }
+}
+
+/// `result += S' of_branch S`.
+void add(const Branch& branch, const BranchMatrix& of_branch, MatrixRef result) {
+  for (const Follow& row : branch.S) {
+    for (const Follow& column : branch.S) {
+      result(row.coordinate, column.coordinate) +=
+          row.factor * column.factor * of_branch(row.joint, column.joint);
+    }
+  }
+}
+
+/// The sum over the branches of a vector, which `compute` gives of a branch with its positions.
+template <class Compute>
+void sumOfVectors(const Model& model, const ConstVectorRef& q, VectorRef result,
+                  const Compute& compute) {
+  BranchVector sum = BranchVector::Zero(result.size());
+  for (const Branch& branch : model.branches) {
+    BranchVector of_branch(branch.chain.jointCount());
+    compute(branch, positionsOf(branch, q), of_branch);
+    add(branch, of_branch, sum);
+  }
+  result = sum;  // which may stand where an input does
+}
+
+/// The same of a matrix.
+template <class Compute>
+void sumOfMatrices(const Model& model, const ConstVectorRef& q, MatrixRef result,
+                   const Compute& compute) {
+  result.setZero();
+  for (const Branch& branch : model.branches) {
+    const Eigen::Index m = branch.chain.jointCount();
+    BranchMatrix of_branch(m, m);
+    compute(branch, positionsOf(branch, q), of_branch);
+    add(branch, of_branch, result);
+  }
+}
+
+}  // namespace
+
+void torques(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+             const ConstVectorRef& qdd, VectorRef tau) {
+  sumOfVectors(model, q, tau,
+               [&](const Branch& branch, const ConstVectorRef& q_b, VectorRef tau_b) {
+                 chain_dynamics::torques(branch.chain, internal::OwnParameters(), q_b,
+                                         ConstVectorRef(motionOf(branch, qd)),
+                                         ConstVectorRef(motionOf(branch, qdd)), tau_b);
+               });
+}
+
+void inertiaMatrix(const Model& model, const ConstVectorRef& q, MatrixRef H) {
+  sumOfMatrices(model, q, H, [&](const Branch& branch, const ConstVectorRef& q_b, MatrixRef H_b) {
+    chain_dynamics::inertiaMatrix(branch.chain, internal::OwnParameters(), q_b, H_b);
+  });
+}
+
+void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                    VectorRef c) {
+  sumOfVectors(model, q, c, [&](const Branch& branch, const ConstVectorRef& q_b, VectorRef c_b) {
+    chain_dynamics::coriolisVector(branch.chain, internal::OwnParameters(), q_b,
+                                   ConstVectorRef(motionOf(branch, qd)), c_b);
+  });
+}
+
+void coriolisMatrix(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                    MatrixRef C) {
+  sumOfMatrices(model, q, C, [&](const Branch& branch, const ConstVectorRef& q_b, MatrixRef C_b) {
+    chain_dynamics::coriolisMatrix(branch.chain, internal::OwnParameters(), q_b,
+                                   ConstVectorRef(motionOf(branch, qd)), C_b);
+  });
+}
+
+void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g) {
+  sumOfVectors(model, q, g, [&](const Branch& branch, const ConstVectorRef& q_b, VectorRef g_b) {
+    chain_dynamics::gravityVector(branch.chain, internal::OwnParameters(), q_b, g_b);
+  });
+}
+
+void torqueDerivatives(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                       const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
+                       MatrixRef dtau_dqdd) {
+  dtau_dq.setZero();
+  dtau_dqd.setZero();
+  dtau_dqdd.setZero();
+  for (const Branch& branch : model.branches) {
+    const Eigen::Index m = branch.chain.jointCount();
+    BranchMatrix by_q(m, m), by_qd(m, m), by_qdd(m, m);
+    chain_dynamics::torqueDerivatives(
+        branch.chain, internal::OwnParameters(), ConstVectorRef(positionsOf(branch, q)),
+        ConstVectorRef(motionOf(branch, qd)), ConstVectorRef(motionOf(branch, qdd)),
+        MatrixRef(by_q), MatrixRef(by_qd), MatrixRef(by_qdd));
+    add(branch, by_q, dtau_dq);
+    add(branch, by_qd, dtau_dqd);
+    add(branch, by_qdd, dtau_dqdd);
+  }
+}
+
+double kineticEnergy(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd) {
+  double sum = 0;
+  for (const Branch& branch : model.branches) {
+    sum += chain_dynamics::kineticEnergy(branch.chain, ConstVectorRef(positionsOf(branch, q)),
+                                         ConstVectorRef(motionOf(branch, qd)));
+  }
+  return sum;
+}
+
+double potentialEnergy(const Model& model, const ConstVectorRef& q) {
+  double sum = 0;
+  for (const Branch& branch : model.branches) {
+    sum += chain_dynamics::potentialEnergy(branch.chain, ConstVectorRef(positionsOf(branch, q)));
+  }
+  return sum;
+}
+
+void addGravityDerivatives(const Model& model, const ConstVectorRef& q,
+                           const ConstVectorRef& factors, MatrixRef dtau_dq) {
+  BranchMatrix dg_dq = BranchMatrix::Zero(q.size(), q.size());
+  for (const Branch& branch : model.branches) {
+    const Eigen::Index m = branch.chain.jointCount();
+    BranchMatrix of_branch(m, m);
+    const auto of_positions = [&](const auto& varied, auto& g) {
+      chain_dynamics::gravityVector(branch.chain, varied, g);
+    };
+    differentiate(positionsOf(branch, q), of_positions, of_branch);
+    add(branch, of_branch, dg_dq);
+  }
+  for (Eigen::Index j = 0; j < q.size(); ++j) dtau_dq.row(j) += factors[j] * dg_dq.row(j);
+}
+
+}  // namespace sums
+}  // namespace v2
+}  // namespace chain_dynamics
