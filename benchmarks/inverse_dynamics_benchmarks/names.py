@@ -43,6 +43,7 @@ ROBOTS = {
     "mixed7": "7 joints, 2 slide",
     "turning6": "6 joints, all turn",
     "turning7": "7 joints, all turn",
+    "two_pandas": "two Pandas on a torso",
     "ur10_identified": "UR10, identified",
     "panda_identified": "Panda, identified",
     "panda_feasible": "Panda, identified as bodies that can exist",

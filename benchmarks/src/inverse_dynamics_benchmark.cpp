@@ -7,6 +7,8 @@
 #include <benchmark/benchmark.h>
 
 #include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/mechanism.hpp>
+#include <chain_dynamics/robot_description.hpp>
 #include <chain_dynamics/urdf.hpp>
 #include <cstdint>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
@@ -83,6 +85,23 @@ void registerRobot(const SolverLoader& loader, const Robot& robot) {
                  solver->getTorques(states.q.col(0), states.qd.col(0), states.qdd.col(0))});
 }
 
+void registerTwoPandas(const SolverLoader& loader) {
+  const Robot robot = twoPandas();
+  const auto solver = loader.load(kRigidBody);
+  solver->initialize(std::map<std::string, ParameterValue>{{"tip", std::string("*")}}, "",
+                     robot.urdf);
+  registerSingleCalls(robot.name, solver);
+  registerBatches(robot.name, solver);
+#ifdef BENCHMARK_PINOCCHIO
+  const auto tree = chain_dynamics::robotFromUrdf(robot.urdf);
+  const States states(solver->jointCount());
+  const auto coordinates = chain_dynamics::mechanismFromRobot(tree, {}, {"*"}).coordinates;
+  registerPinocchio({robot.name, robot.urdf, coordinates,
+                     solver->getTorques(states.q.col(0), states.qd.col(0), states.qdd.col(0)),
+                     tree});
+#endif
+}
+
 void registerIdentified(const SolverLoader& loader, const std::string& robot,
                         const std::string& plugin) {
   const auto solver = loader.load(plugin);
@@ -109,6 +128,7 @@ int run(int argc, char** argv) {
 
   const SolverLoader loader;
   for (const Robot& robot : robots()) registerRobot(loader, robot);
+  registerTwoPandas(loader);
   registerIdentified(loader, "ur10_identified",
                      "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10");
   registerIdentified(loader, "panda_identified",

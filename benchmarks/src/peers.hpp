@@ -11,6 +11,8 @@
 
 #include <Eigen/Core>
 #include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/robot_description.hpp>
+#include <optional>
 #include <string>
 
 namespace inverse_dynamics_benchmarks {
@@ -21,6 +23,8 @@ struct PeerRobot {
   std::string urdf;
   chain_dynamics::Chain chain;  ///< of the URDF
   Eigen::VectorXd expected;     ///< torques of the first state [N m]
+  /// Nothing: the chain. Otherwise the tree, whose coordinates are the joints of the chain.
+  std::optional<chain_dynamics::RobotDescription> tree = {};
 };
 
 /// Throws unless torques equal the expected ones to 1e-9 of the greatest.

@@ -19,10 +19,8 @@ namespace inverse_dynamics_benchmarks {
 namespace {
 
 struct PinocchioPeer {
-  explicit PinocchioPeer(const chain_dynamics::Chain& chain)
-      : model(pinocchio_inverse_dynamics_solver::toPinocchio(chain)),
-        data(model),
-        states(chain.jointCount()) {}
+  explicit PinocchioPeer(const pinocchio_inverse_dynamics_solver::Model& of)
+      : model(of), data(model), states(model.nv) {}
 
   auto torques(Eigen::Index k) {
     return pinocchio::rnea(model, data, states.q.col(k), states.qd.col(k), states.qdd.col(k))
@@ -67,7 +65,10 @@ struct PinocchioPeer {
 }  // namespace
 
 void registerPinocchio(const PeerRobot& robot) {
-  const auto peer = std::make_shared<PinocchioPeer>(robot.chain);
+  using pinocchio_inverse_dynamics_solver::toPinocchio;
+  auto model = robot.tree ? toPinocchio(*robot.tree) : toPinocchio(robot.chain);
+  model.gravity.linear() = robot.chain.gravity();
+  const auto peer = std::make_shared<PinocchioPeer>(model);
   peer->torques(0);
   requireSameTorques(robot, "Pinocchio", peer->data.tau);
   const auto add = [&](const char* quantity, auto call) {

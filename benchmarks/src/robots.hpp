@@ -26,6 +26,9 @@ std::vector<Robot> realRobots();
 /// path of its model file.
 std::string feasiblePandaFile();
 
+/// Two Pandas on a torso that turns: a tree of 15 joints, named `two_pandas`.
+Robot twoPandas();
+
 /// These, chains of 1 to 30 joints that turn and slide, and of 6 and 7 that turn.
 std::vector<Robot> robots();
 
