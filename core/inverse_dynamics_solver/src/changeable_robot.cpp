@@ -3,17 +3,23 @@
 
 #include <pthread.h>
 
+#include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <set>
 #include <shared_mutex>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "chain_dynamics/error.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/model.hpp"
 #include "chain_dynamics/spatial.hpp"
+#include "chain_dynamics/text.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace inverse_dynamics_solver {
@@ -66,6 +72,25 @@ ChangingConditions::ChangingConditions() { Forks::all().add(this); }
 
 ChangingConditions::~ChangingConditions() { Forks::all().remove(this); }
 
+namespace {
+
+/// Index of the tip that carries a body.
+std::size_t tipOf(const chain_dynamics::Model& model, const std::string& name,
+                  const RigidBody& body) {
+  if (body.tip.empty()) return 0;
+  std::vector<std::string> tips;
+  for (const chain_dynamics::Branch& branch : model.branches) {
+    if (branch.tip == body.tip) return tips.size();
+    tips.push_back(branch.tip);
+  }
+  throw chain_dynamics::ModelError(
+      "payload '" + name + "'", "tip",
+      tips.empty() ? "none, as a chain has one tip" : "one of " + chain_dynamics::joined(tips),
+      "'" + body.tip + "'", "the parameter 'tip' names the tips");
+}
+
+}  // namespace
+
 chain_dynamics::SpatialInertia<double> ChangingConditions::Conditions::payload() const {
   auto sum = chain_dynamics::SpatialInertia<double>::zero();
   for (const auto& [name, body] : payloads) sum += inTipFrame(body);
@@ -75,9 +100,15 @@ chain_dynamics::SpatialInertia<double> ChangingConditions::Conditions::payload()
 chain_dynamics::Model ChangingConditions::Conditions::appliedTo(
     const chain_dynamics::Model& bare) const {
   // Without bodies, the numbers are those of the bare robot, bit by bit.
-  chain_dynamics::Model model = payloads.empty() ? bare : withBodyAtTip(bare, payload());
-  model.chain = model.chain.withGravity(base.apparentGravity());
-  return model;
+  std::map<std::size_t, chain_dynamics::SpatialInertia<double>> carried;  // by tip
+  for (const auto& [name, body] : payloads) {
+    const auto sum =
+        carried.emplace(tipOf(bare, name, body), chain_dynamics::SpatialInertia<double>::zero());
+    sum.first->second += inTipFrame(body);
+  }
+  chain_dynamics::Model model = bare;
+  for (const auto& [tip, body] : carried) model = withBodyAtTip(model, body, tip);
+  return withGravity(model, base.apparentGravity());
 }
 
 auto ChangingConditions::readConditions(const Configuration& configuration,

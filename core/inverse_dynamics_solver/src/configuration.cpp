@@ -11,11 +11,13 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/gravity.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
 #include "chain_dynamics/urdf.hpp"
@@ -60,6 +62,29 @@ void readAttached(Configuration& configuration) {
         "lump: bodies attached beside or beyond the chain are included; ignore: they aren't");
   }
   configuration.lump_attached = attached == "lump";
+}
+
+std::string readTip(const Configuration& configuration) {
+  const auto value = configuration.parameters.find(configuration.fullName("tip"));
+  if (!value || !std::holds_alternative<std::vector<std::string>>(*value)) {
+    return configuration.get<std::string>("tip").value_or("");
+  }
+  return chain_dynamics::joined(std::get<std::vector<std::string>>(*value));
+}
+
+/// The tips that a text names; that of one link if it is one's name.
+std::vector<std::string> tipsOf(const chain_dynamics::RobotDescription& robot,
+                                const std::string& text) {
+  if (text.empty()) return {};
+  if (robot.linkIndex(text) != chain_dynamics::RobotDescription::kNone) return {text};
+  std::vector<std::string> tips;
+  std::istringstream parts(text);
+  for (std::string tip; std::getline(parts, tip, ',');) {
+    const std::size_t first = tip.find_first_not_of(' ');
+    const std::size_t last = tip.find_last_not_of(' ');
+    tips.push_back(first == std::string::npos ? "" : tip.substr(first, last - first + 1));
+  }
+  return tips;
 }
 
 void readBatchThreads(Configuration& configuration) {
@@ -151,7 +176,7 @@ Configuration readConfiguration(const Parameters& parameters, const std::string&
                                 : robot_description;
 
   configuration.root = configuration.get<std::string>("root").value_or("");
-  configuration.tip = configuration.get<std::string>("tip").value_or("");
+  configuration.tip = readTip(configuration);
   configuration.allow_massless = configuration.get<bool>("allow_massless").value_or(false);
   configuration.friction = configuration.get<bool>("friction").value_or(true);
   configuration.urdf_friction = configuration.get<bool>("urdf_friction").value_or(false);
@@ -162,27 +187,63 @@ Configuration readConfiguration(const Parameters& parameters, const std::string&
   return configuration;
 }
 
-chain_dynamics::Chain chainFromDescription(const Configuration& configuration) {
+namespace {
+
+/// The robot description, and how it is taken.
+struct Description {
+  explicit Description(const Configuration& configuration) : rotors(configuration) {
+    robot = chain_dynamics::robotFromUrdf(configuration.robot_description);
+    options.root = configuration.root;
+    if (configuration.gravity_given) options.gravity = configuration.gravity;
+    options.lump_attached = configuration.lump_attached;
+    options.allow_massless = configuration.allow_massless;
+    options.locked_position = configuration.locked_position;
+    options.rotor_inertia = [this](const auto& joint) { return rotors.of(joint); };
+    tips = tipsOf(robot, configuration.tip);
+  }
+
+  RotorInertia rotors;
+  chain_dynamics::RobotDescription robot;
+  chain_dynamics::UrdfOptions options;
+  std::vector<std::string> tips;
+};
+
+/// What `take` makes of the description.
+template <class Take>
+auto fromDescription(const Configuration& configuration, const Take& take) {
   if (configuration.robot_description.empty()) {
     throw ParameterUninitializedException(
         "robot description", "missing", "the text of a URDF", "nothing",
         "pass it to initialize() as third argument, or set the parameter "
         "'robot_description' (without namespace)");
   }
-  chain_dynamics::UrdfOptions options;
-  options.root = configuration.root;
-  options.tip = configuration.tip;
-  if (configuration.gravity_given) options.gravity = configuration.gravity;
-  options.lump_attached = configuration.lump_attached;
-  options.allow_massless = configuration.allow_massless;
-  options.locked_position = configuration.locked_position;
-  RotorInertia rotors(configuration);
-  options.rotor_inertia = [&rotors](const auto& joint) { return rotors.of(joint); };
   try {
-    return rotors.warnedOf(chain_dynamics::chainFromUrdf(configuration.robot_description, options));
+    Description description(configuration);
+    return take(description);
   } catch (const chain_dynamics::ModelError& e) {
     throw InvalidRobotDescriptionException(std::string("robot description: ") + e.what());
   }
+}
+
+}  // namespace
+
+chain_dynamics::Chain chainFromDescription(const Configuration& configuration) {
+  return fromDescription(configuration, [&](Description& description) {
+    if (description.tips.size() > 1 || configuration.tip == "*") {
+      configuration.refuse("tip", "one link, as the solver computes chains", configuration.tip,
+                           "name one tip, or take rigid_body_inverse_dynamics_solver");
+    }
+    if (!description.tips.empty()) description.options.tip = description.tips[0];
+    return description.rotors.warnedOf(chainFromRobot(description.robot, description.options));
+  });
+}
+
+chain_dynamics::Mechanism mechanismFromDescription(const Configuration& configuration) {
+  return fromDescription(configuration, [](Description& description) {
+    auto mechanism = mechanismFromRobot(description.robot, description.options, description.tips);
+    mechanism.coordinates = description.rotors.warnedOf(mechanism.coordinates);
+    return mechanism;
+  });
 }
 
 DescriptionFriction descriptionFriction(const Configuration& configuration,

@@ -64,6 +64,11 @@ const std::vector<std::string>& InverseDynamicsSolver::jointNames() const {
   return info_.joint_names;
 }
 
+const std::vector<std::string>& InverseDynamicsSolver::tipNames() const {
+  requireInitialized("tipNames");
+  return info_.tip_names;
+}
+
 const std::vector<chain_dynamics::JointType>& InverseDynamicsSolver::jointTypes() const {
   requireInitialized("jointTypes");
   return info_.joint_types;

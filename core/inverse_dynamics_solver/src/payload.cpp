@@ -59,7 +59,7 @@ std::optional<BodyDefect> inertiaDefect(const RigidBody& body) {
 
 bool operator==(const RigidBody& a, const RigidBody& b) {
   return a.mass == b.mass && a.center_of_mass == b.center_of_mass && a.inertia == b.inertia &&
-         a.frame.R == b.frame.R && a.frame.p == b.frame.p;
+         a.frame.R == b.frame.R && a.frame.p == b.frame.p && a.tip == b.tip;
 }
 
 LinkParameters inTipFrame(const RigidBody& body) {

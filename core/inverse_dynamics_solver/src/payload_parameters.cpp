@@ -49,12 +49,14 @@ std::optional<RigidBody> readBody(const Configuration& configuration, const std:
                             "ixx ixy ixz iyy iyz izz about the center of mass [kg m^2]");
   const auto xyz = read(configuration, prefix + "frame.xyz", 3, "x y z in the tip frame [m]");
   const auto rpy = read(configuration, prefix + "frame.rpy", 3, "roll pitch yaw [rad]");
-  if (!mass && !center && !inertia && !xyz && !rpy) return {};
+  const auto tip = configuration.get<std::string>(prefix + "tip");
+  if (!mass && !center && !inertia && !xyz && !rpy && !tip) return {};
 
   RigidBody body;
   body.mass = configuration.require<double>(prefix + "mass");
   body.center_of_mass = vectorOf(center);
   body.inertia = inertiaOf(inertia);
+  body.tip = tip.value_or("");
   const Eigen::Vector3d angles = vectorOf(rpy);
   body.frame = {chain_dynamics::rotationFromRollPitchYaw(angles), vectorOf(xyz)};
   if (const auto defect = defectOf(body)) {

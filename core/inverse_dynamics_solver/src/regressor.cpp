@@ -11,11 +11,9 @@ Regressor::~Regressor() = default;
 
 void Regressor::getRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
                              const ConstVectorRef& qdd, MatrixRef Y) const {
-  MethodCall("getRegressor", torqueSolver())
-      .vector("q", q)
-      .vector("qd", qd)
-      .vector("qdd", qdd)
-      .matrix("Y", Y, q.size(), 10 * q.size());
+  const MethodCall call("getRegressor", torqueSolver());
+  call.vector("q", q).vector("qd", qd).vector("qdd", qdd);
+  call.matrix("Y", Y, q.size(), 10 * linkCountImpl());
   computeRegressor(q, qd, qdd, Y);
 }
 
@@ -23,9 +21,10 @@ void Regressor::getRegressorBatch(const ConstStatesRef& q, const ConstStatesRef&
                                   const ConstStatesRef& qdd, const StridedMatrices& Y) const {
   const BatchCall call("getRegressorBatch", torqueSolver(), q.count);
   call.states("q", q).states("qd", qd).states("qdd", qdd);
-  call.matrices("Y", Y, q.joints, 10 * q.joints);
+  const Eigen::Index columns = 10 * linkCountImpl();
+  call.matrices("Y", Y, q.joints, columns);
   call.share([this](const auto&... part) { computeRegressorBatch(part...); }, q, qd, qdd,
-             Y.withColumns(10 * q.joints));
+             Y.withColumns(columns));
 }
 
 void Regressor::computeRegressorBatch(const ConstStates& q, const ConstStates& qd,

@@ -170,6 +170,27 @@ TEST(ChainFromDescription, RotorInertiaIsThatOfParametersElseOfTheDescriptionWhe
             "the gear ratio");
 }
 
+TEST(ChainFromDescription, RefusesSeveralTipsThatAMechanismTakes) {
+  using Names = std::vector<std::string>;
+  for (const ParameterValue& tips :
+       {ParameterValue(std::string("tool, finger")), ParameterValue(Names{"tool", "finger"})}) {
+    const Configuration configuration = readConfiguration({{"ids.tip", tips}}, "ids", kArm);
+    const std::string error =
+        errorOf<InvalidParameterValueException>([&] { chainFromDescription(configuration); });
+    EXPECT_NE(error.find("'ids.tip'"), std::string::npos) << error;
+    EXPECT_NE(error.find("tool, finger"), std::string::npos) << error;
+    EXPECT_NE(error.find("rigid_body_inverse_dynamics_solver"), std::string::npos) << error;
+    const chain_dynamics::Mechanism robot = mechanismFromDescription(configuration);
+    EXPECT_EQ(robot.coordinates.jointNames(), (Names{"shoulder", "slide"}));
+    EXPECT_EQ(robot.branches.size(), 2U);
+  }
+  errorOf<InvalidParameterValueException>([&] {
+    chainFromDescription(readConfiguration({{"tip", std::string("*")}}, "", kArm));
+  });
+  const Configuration one = readConfiguration({{"tip", Names{"tool"}}}, "", kArm);
+  EXPECT_EQ(chainFromDescription(one).jointNames(), Names{"shoulder"});
+}
+
 TEST(ChainFromDescription, RefusesWhatIsNoRobot) {
   const auto error = [](Parameters parameters, const std::string& text) {
     return errorOf<InvalidRobotDescriptionException>(

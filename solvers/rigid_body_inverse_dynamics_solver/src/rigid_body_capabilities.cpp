@@ -26,21 +26,31 @@ Eigen::Matrix<double, 6, 1> inRootAxes(const Eigen::Matrix3d& R, const ConstVect
   return turned;
 }
 
+void wrenchTorques(const FastModel& fast, const ConstVectorRef& q, WrenchFrame frame,
+                   const ConstVectorRef& wrench, VectorRef tau) {
+  Eigen::Matrix<double, 6, 1> w = wrench;
+  if (frame == WrenchFrame::kTip) {
+    Transform<double> pose;
+    fast.tipPose(q.data(), pose.R.data(), pose.p.data());
+    w = inRootAxes(pose.R, wrench);
+  }
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, FastModel::kMaxJoints> J(6, q.size());
+  fast.tipJacobian(q.data(), J.data(), 6);
+  tau.noalias() = J.transpose().lazyProduct(w);
+}
+
 }  // namespace
+
+void RigidBodyTip::computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
+                                          const ConstVectorRef& wrench, VectorRef tau) const {
+  wrenchTorques(fast_, q, frame, wrench, tau);
+}
 
 void InverseDynamicsSolverRigidBody::computeExternalTorques(const ConstVectorRef& q,
                                                             WrenchFrame frame,
                                                             const ConstVectorRef& wrench,
                                                             VectorRef tau) const {
-  Eigen::Matrix<double, 6, 1> w = wrench;
-  if (frame == WrenchFrame::kTip) {
-    Transform<double> pose;
-    computeTipPose(q, pose);
-    w = inRootAxes(pose.R, wrench);
-  }
-  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, FastModel::kMaxJoints> J(6, q.size());
-  computeTipJacobian(q, J);
-  tau.noalias() = J.transpose().lazyProduct(w);
+  wrenchTorques(initialRobot().fast, q, frame, wrench, tau);
 }
 
 void InverseDynamicsSolverRigidBody::computeTorqueDerivatives(const ConstVectorRef& q,
@@ -97,15 +107,16 @@ void InverseDynamicsSolverRigidBody::computeRegressorBatch(const ConstStates& q,
   // The kernels round otherwise where rows don't stand side by side. A layout mustn't change the bits:
   // through memory where they do.
   const Eigen::Index n = q.joints, most = std::min<Eigen::Index>(q.count, 32);
-  std::vector<double> numbers(static_cast<std::size_t>(10 * n * n * most));
+  const Eigen::Index all = 10 * robot->fast.linkCount();
+  std::vector<double> numbers(static_cast<std::size_t>(n * all * most));
   for (Eigen::Index first = 0; first < q.count; first += most) {
     const Eigen::Index size = std::min(most, q.count - first);
-    const StridedMatrices columns(numbers.data(), n, 10 * n, size, 1, n, 10 * n * n);
+    const StridedMatrices columns(numbers.data(), n, all, size, 1, n, n * all);
     robot->fast.regressorBatch(q.middle(first, size), qd.middle(first, size),
                                qdd.middle(first, size), columns);
     for (Eigen::Index k = 0; k < size; ++k) {
       for (Eigen::Index i = 0; i < n; ++i) {
-        for (Eigen::Index j = 0; j < 10 * n; ++j) Y(i, j, first + k) = columns(i, j, k);
+        for (Eigen::Index j = 0; j < all; ++j) Y(i, j, first + k) = columns(i, j, k);
       }
     }
   }

@@ -48,7 +48,7 @@ chain_dynamics::Model modelOfFile(const Configuration& configuration, const std:
   }
 }
 
-Chain chainOfDescription(const Configuration& configuration) {
+chain_dynamics::Mechanism robotOfDescription(const Configuration& configuration) {
   if (configuration.robot_description.empty()) {
     throw ParameterUninitializedException(
         "robot description", "missing", "the text of a URDF, or a model file", "neither",
@@ -56,7 +56,7 @@ Chain chainOfDescription(const Configuration& configuration) {
         "'robot_description' (without namespace) or '" +
             configuration.fullName("model") + "'");
   }
-  return chainFromDescription(configuration);
+  return mechanismFromDescription(configuration);
 }
 
 /// Warnings of parameters that have a meaning for robot descriptions only.
@@ -196,7 +196,7 @@ auto InverseDynamicsSolverRigidBody::configure(const Configuration& configuratio
   const std::string name = configuration.get<std::string>("model").value_or("");
   if (!name.empty()) return use(modelOfFile(configuration, name), configuration);
 
-  chain_dynamics::Model model(chainOfDescription(configuration));
+  chain_dynamics::Model model(robotOfDescription(configuration));
   DescriptionFriction friction = descriptionFriction(configuration, model.chain);
   model.friction.assign(friction.laws.begin(), friction.laws.end());
   return keep(std::move(model), configuration, std::move(friction.warnings));
@@ -220,6 +220,14 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
   const bool inertia_is_physical = model.inertiaIsPhysical();
   JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical),
                  model.chain.jointTypes()};
+  std::vector<std::unique_ptr<const RigidBodyTip>> other_tips;
+  chain_dynamics::Model with_tip_first = model;
+  for (std::size_t i = 0; i < model.branches.size(); ++i) {
+    info.tip_names.push_back(model.branches[i].tip);
+    if (i == 0) continue;
+    std::swap(with_tip_first.branches[0], with_tip_first.branches[i]);
+    other_tips.push_back(std::make_unique<const RigidBodyTip>(*this, with_tip_first));
+  }
   for (std::string& warning : warnings) info.warnings.push_back(std::move(warning));
   auto conditions = readConditions(configuration, model.chain.gravity());
   auto robot = std::make_unique<ReadyModel>(conditions->appliedTo(model));
@@ -231,6 +239,7 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
   // Keep; nothing below can throw.
   beginWith(std::move(robot), std::move(conditions));
   model_ = std::move(bare);
+  other_tips_ = std::move(other_tips);
   inertia_is_physical_ = inertia_is_physical;
   return info;
 }

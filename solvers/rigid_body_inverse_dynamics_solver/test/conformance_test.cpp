@@ -14,6 +14,7 @@
 #include "chain_dynamics/model_file.hpp"
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
+#include "two_arms.hpp"
 
 namespace rigid_body_inverse_dynamics_solver::conformance_test {
 
@@ -49,6 +50,18 @@ struct PandaDescriptionWithFriction : PandaDescription {
 std::optional<chain_dynamics::Model> modelOf(const std::string& name) {
   return chain_dynamics::modelFromFile(robotsFile("models/" + name + ".yaml"));
 }
+
+struct TwoArms : RigidBody {
+  static ParameterMap parameters() { return {{"tip", std::string("*")}}; }
+  static std::string robotDescription() { return twoArms(); }
+};
+
+struct TwoArmsWithFriction : TwoArms {
+  static ParameterMap parameters() {
+    return {{"tip", std::vector<std::string>{"right_tool", "left_other_finger", "left_finger"}},
+            {"urdf_friction", true}};
+  }
+};
 
 struct FeasiblePandaModel : RigidBody {
   static ParameterMap parameters() { return {{"model", std::string("franka_gaz2019_feasible")}}; }
@@ -116,6 +129,8 @@ struct IdentifiedUr10Model : RigidBody {
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Ur10Description, Ur10Description);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaDescription, PandaDescription);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaDescriptionWithFriction, PandaDescriptionWithFriction);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(TwoArms, TwoArms);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(TwoArmsWithFriction, TwoArmsWithFriction);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(FeasiblePandaModel, FeasiblePandaModel);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(LoadedPandaModel, LoadedPandaModel);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(IdentifiedUr10Model, IdentifiedUr10Model);

@@ -10,13 +10,19 @@
 #include <string>
 #include <vector>
 
+#include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/fast_model.hpp"
+#include "chain_dynamics/model.hpp"
+#include "chain_dynamics/urdf.hpp"
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/external_wrench.hpp"
+#include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
 #include "inverse_dynamics_solver/payload.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
+#include "two_arms.hpp"
 
 namespace rigid_body_inverse_dynamics_solver::rigid_body_inverse_dynamics_solver_test {
 
@@ -434,6 +440,146 @@ TEST(RigidBody, ChainOfMoreThan64JointsIsRefused) {
 TEST(ModelFiles, InstalledModelsAreTheThreeOfTheProject) {
   EXPECT_EQ(installedModels(),
             (std::vector<std::string>{kFeasible, "franka_inria_identified", kUr10}));
+}
+
+// ---------------------------------------------------------------------------------------------
+// Trees
+
+using inverse_dynamics_solver::Kinematics;
+using inverse_dynamics_solver::RigidBody;
+using inverse_dynamics_solver::WrenchInTip;
+using inverse_dynamics_solver::conformance::ParameterMap;
+using Names = std::vector<std::string>;
+
+InverseDynamicsSolverRigidBody& initialized(InverseDynamicsSolverRigidBody& solver,
+                                            const ParameterMap& parameters,
+                                            const std::string& urdf = twoArms()) {
+  solver.initialize(parameters, "", urdf);
+  return solver;
+}
+
+std::string treeError(const ParameterMap& parameters, const std::string& urdf = twoArms()) {
+  InverseDynamicsSolverRigidBody solver;
+  return errorOf<Exception>([&] { solver.initialize(parameters, "", urdf); });
+}
+
+TEST(Trees, HaveTheJointsThatMimicNoOtherInTheOrderOfTheDescription) {
+  InverseDynamicsSolverRigidBody solver;
+  initialized(solver, {{"tip", std::string("*")}});
+  EXPECT_EQ(solver.jointNames(),
+            (Names{"lift_joint", "chest_joint", "left_shoulder_joint", "left_elbow_joint",
+                   "left_hand_joint", "right_shoulder_joint", "right_elbow_joint",
+                   "right_hand_joint", "left_finger_joint"}));
+  EXPECT_EQ(solver.tipNames(), (Names{"right_tool", "left_finger", "left_other_finger"}));
+  EXPECT_EQ(solver.linkCount(), 10);
+  EXPECT_EQ(solver.jointTypes()[3], chain_dynamics::JointType::kContinuous);
+  EXPECT_TRUE(solver.inertiaIsPhysical());
+}
+
+TEST(Trees, TakeTheirTipsFromAListOrATextWithCommas) {
+  InverseDynamicsSolverRigidBody list, text;
+  initialized(list, {{"tip", Names{"left_tool", "right_tool"}}});
+  initialized(text, {{"tip", std::string("left_tool, right_tool")}});
+  EXPECT_EQ(list.jointCount(), 8);
+  EXPECT_EQ(list.tipNames(), text.tipNames());
+  const Eigen::VectorXd q = ramp(8, -0.4, 0.3);
+  EXPECT_EQ(list.getTorques(q, q, q), text.getTorques(q, q, q));
+}
+
+TEST(Trees, OfOneTipAreTheChainBitForBit) {
+  InverseDynamicsSolverRigidBody chain, list;
+  initialized(chain, {{"tip", std::string("right_tool")}});
+  initialized(list, {{"tip", Names{"right_tool"}}});
+  EXPECT_TRUE(list.tipNames().empty());
+  const Eigen::VectorXd q = ramp(5, -0.4, 0.3);
+  EXPECT_EQ(chain.getTorques(q, q, q), list.getTorques(q, q, q));
+  const chain_dynamics::Chain expected =
+      chain_dynamics::chainFromUrdf(twoArms(), {"", "right_tool", {}, true, false, {}, {}});
+  const chain_dynamics::FastModel fast{chain_dynamics::Model(expected)};
+  Eigen::VectorXd tau(5);
+  fast.torques(q.data(), q.data(), q.data(), tau.data());
+  EXPECT_EQ(list.getTorques(q, q, q), tau);
+}
+
+TEST(Trees, MoveAnArmAsTheChainThatHoldsTheOther) {
+  // the other arm at rest at zero, as the chain holds it
+  InverseDynamicsSolverRigidBody tree, chain;
+  initialized(tree, {{"tip", Names{"left_tool", "right_tool"}}});
+  initialized(chain, {{"tip", std::string("right_tool")}});
+  const std::vector<Eigen::Index> of_chain = {0, 1, 5, 6, 7};
+  const Eigen::VectorXd q_chain = ramp(5, -0.4, 0.3);
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(8);
+  q(of_chain) = q_chain;
+  const Eigen::VectorXd tau = tree.getTorques(q, q, q)(of_chain);
+  EXPECT_LE((tau - chain.getTorques(q_chain, q_chain, q_chain)).norm(), 1e-12 * tau.norm());
+  EXPECT_LE((tree.kinematicsOf("right_tool").getTipJacobian(q)(Eigen::all, of_chain) -
+             chain.getTipJacobian(q_chain))
+                .norm(),
+            1e-12);
+}
+
+TEST(Trees, GiveKinematicsWrenchesAndPayloadsOfEachTip) {
+  InverseDynamicsSolverRigidBody solver;
+  initialized(solver, {{"tip", Names{"left_tool", "right_tool"}}});
+  const Eigen::VectorXd q = ramp(8, -0.4, 0.3), qd = ramp(8, 0.5, -0.2), qdd = ramp(8, 1, 0.4);
+  EXPECT_EQ(&solver.kinematicsOf("left_tool"), static_cast<const Kinematics*>(&solver));
+  const Kinematics& right = solver.kinematicsOf("right_tool");
+  const Eigen::MatrixXd J = right.getTipJacobian(q);
+  EXPECT_TRUE(J.middleCols(2, 3).isZero(0));
+  EXPECT_FALSE(J.middleCols(5, 3).isZero(1e-3));
+  const WrenchInTip wrench{{1, 2, 3}, {0.1, 0.2, 0.3}};
+  const Eigen::Matrix3d R = right.getTipPose(q).R;
+  Eigen::VectorXd in_root(6);
+  in_root << R * wrench.force, R * wrench.torque;
+  const auto& contact = solver.externalWrenchAt("right_tool");
+  EXPECT_LE((contact.getExternalTorques(q, wrench) - J.transpose() * in_root).norm(), 1e-12);
+  EXPECT_LE((contact.getTorques(q, qd, qdd, wrench) - contact.getExternalTorques(q, wrench) -
+             solver.getTorques(q, qd, qdd))
+                .norm(),
+            1e-12);
+
+  // gravity of a point mass is its weight at the tip
+  const Eigen::VectorXd bare = solver.getGravityVector(q);
+  RigidBody part{2.0};
+  part.tip = "right_tool";
+  solver.setPayload("part", part);
+  const Eigen::VectorXd weight = 2.0 * 9.81 * J.row(2).transpose();
+  EXPECT_LE((solver.getGravityVector(q) - bare - weight).norm(), 1e-12 * weight.norm());
+  part.tip = "tail";
+  expectContains(errorOf<Exception>([&] { solver.setPayload("part", part); }),
+                 {"payload 'part'", "tip", "left_tool, right_tool", "'tail'"});
+  solver.clearPayloads();
+  EXPECT_EQ(solver.getGravityVector(q), bare);
+  expectContains(errorOf<Exception>([&] { solver.kinematicsOf("tail"); }),
+                 {"kinematicsOf", "left_tool, right_tool", "'tail'"});
+
+  InverseDynamicsSolverRigidBody with_parameters;
+  initialized(with_parameters, {{"tip", Names{"left_tool", "right_tool"}},
+                                {"payload.mass", 2.0},
+                                {"payload.tip", std::string("right_tool")}});
+  EXPECT_LE((with_parameters.getGravityVector(q) - bare - weight).norm(), 1e-12 * weight.norm());
+}
+
+TEST(Trees, AddFrictionOfAFollowerToItsCoordinate) {
+  InverseDynamicsSolverRigidBody solver;
+  initialized(solver, {{"tip", std::string("*")}, {"urdf_friction", true}});
+  const Eigen::VectorXd qd = Eigen::VectorXd::Constant(9, -0.5);
+  const Eigen::VectorXd f = solver.getFrictionVector(qd);
+  EXPECT_NEAR(f[7], -0.5 * 0.4 - 0.3, 1e-12);
+  EXPECT_NEAR(f[8], -0.5 * 0.4 * (1 + 1.5 * 1.5) - 0.3 * (1 + 1.5), 1e-12);
+}
+
+TEST(Trees, AreRefusedByName) {
+  const auto tips = [](const Names& names) { return ParameterMap{{"tip", names}}; };
+  expectContains(treeError(tips({"left_tool", "head"})), {"tip", "'head'", "nearest names"});
+  expectContains(treeError(tips({"left_tool", "left_tool"})), {"'left_tool' twice"});
+  expectContains(treeError(tips({"left_tool", "base"})), {"at least one movable joint"});
+  const std::string loop =
+      replaced(twoArms("<mimic joint='left_finger_joint'/>"), "<child link='left_finger'/>",
+               "<child link='left_finger'/><mimic joint='left_other_finger_joint'/>");
+  expectContains(treeError(tips({"*"}), loop), {"left_finger_joint", "<mimic>", "follows itself"});
+  expectContains(treeError(tips({"left_other_finger", "right_tool"})),
+                 {"left_other_finger_joint", "<mimic>", "left_finger_joint", "add a tip"});
 }
 
 }  // namespace rigid_body_inverse_dynamics_solver::rigid_body_inverse_dynamics_solver_test

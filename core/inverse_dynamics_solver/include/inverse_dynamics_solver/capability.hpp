@@ -23,6 +23,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <string>
 
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
@@ -55,6 +57,11 @@ class Capability {
   ///
   /// @throws UninitializedException  naming the method.
   Eigen::Index jointsFor(const char* method) const;
+
+  /// Index of a tip among InverseDynamicsSolver::tipNames().
+  ///
+  /// @throws UninitializedException, InvalidParameterValueException (no such tip)  naming the method.
+  std::size_t tipIndex(const char* method, const std::string& tip) const;
 };
 
 }  // namespace v2

@@ -43,12 +43,12 @@ class ChangingConditions : public Payload, public VariableGravity {
     Payloads payloads;
     BaseMotion base;
 
-    /// All bodies as one, in the tip frame.
+    /// All bodies as one, in the tip frame of a chain.
     chain_dynamics::SpatialInertia<double> payload() const;
 
-    /// The model of a bare robot with all bodies at its tip, under the apparent gravity.
+    /// The model of a bare robot with all bodies at its tips, under the apparent gravity.
     ///
-    /// @throws chain_dynamics::ModelError  numbers that are too large together.
+    /// @throws chain_dynamics::ModelError  numbers that are too large together, no such tip.
     chain_dynamics::Model appliedTo(const chain_dynamics::Model& bare) const;
   };
 

@@ -23,6 +23,7 @@
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/friction.hpp"
 #include "chain_dynamics/friction_laws/viscous_coulomb_offset.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
 
 namespace inverse_dynamics_solver {
@@ -34,7 +35,7 @@ inline namespace v2 {
 /// | parameter below the namespace | type      | default                                     |
 /// |-------------------------------|-----------|---------------------------------------------|
 /// | root                          | string    | "": the URDF's root link                    |
-/// | tip                           | string    | "": its leaf, if that leaves no choice      |
+/// | tip                           | string(s) | "": its leaf, if that leaves no choice      |
 /// | gravity                       | 3 doubles | [0, 0, -9.81]                               |
 /// | attached                      | string    | "lump"                                      |
 /// | locked_joints.<joint>         | double    | 0                                           |
@@ -45,11 +46,15 @@ inline namespace v2 {
 /// | urdf_friction                 | bool      | false: `<dynamics>` of the URDF isn't used  |
 /// | batch_threads                 | integer   | 1: the library starts no thread             |
 // clang-format on
+///
+/// Several tips, as a list or a text with commas, or "*" for all leaves, are for solvers of trees
+/// [chain_dynamics/mechanism.hpp].
 struct Configuration {
   /// URDF text; empty if there is none.
   std::string robot_description;
 
-  /// First and last link of the chain; empty: the URDF's root link and its leaf.
+  /// First and last link of the chain; empty: the URDF's root link and its leaf. Several tips stand with
+  /// commas between them.
   std::string root, tip;
 
   /// Where things fall, in the frame of the root link [m/s^2]. Where it isn't given and the
@@ -135,9 +140,13 @@ Configuration readConfiguration(const Parameters& parameters, const std::string&
 /// The chain of the robot description between root and tip, any two of its links [urdf.hpp]: with
 /// the rotor inertia of its joints that `rotor_inertia` asks for.
 ///
-/// Throws ParameterUninitializedException: no robot description. InvalidRobotDescriptionException:
-/// not a URDF, no such link, no chain, a joint or link that can't be computed with.
+/// Throws ParameterUninitializedException: no robot description. InvalidParameterValueException: several
+/// tips. InvalidRobotDescriptionException: not a URDF, no such link, no chain, a joint or link that can't
+/// be computed with.
 chain_dynamics::Chain chainFromDescription(const Configuration& configuration);
+
+/// The same between root and all tips: a tree, or a chain, which has no branches.
+chain_dynamics::Mechanism mechanismFromDescription(const Configuration& configuration);
 
 /// Friction that a robot description states.
 struct DescriptionFriction {

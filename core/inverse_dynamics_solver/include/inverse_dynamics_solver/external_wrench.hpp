@@ -9,6 +9,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -52,6 +54,14 @@ using WrenchesInTip = Wrenches<WrenchFrame::kTip>;
 class ExternalWrench : public Capability {
  public:
   ~ExternalWrench() override;
+
+  /// That of another tip of a tree; until the next initialize(). Torques of several wrenches are sums of
+  /// those of each.
+  ///
+  /// @throws UninitializedException; InvalidParameterValueException  none of tipNames().
+  const ExternalWrench& externalWrenchAt(const std::string& tip) const {
+    return externalWrenchAtTip(tipIndex("externalWrenchAt", tip));
+  }
 
   /// @name By value
   /// @{
@@ -120,6 +130,8 @@ class ExternalWrench : public Capability {
   /// @name What a solver implements
   /// As the compute... of InverseDynamicsSolver.
   /// @{
+
+  virtual const ExternalWrench& externalWrenchAtTip(std::size_t /*tip*/) const { return *this; }
 
   /// @param wrench  6: force, torque.
   virtual void computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,

@@ -74,11 +74,16 @@ class InverseDynamicsSolver {
   /// Whether initialize() has succeeded.
   bool isInitialized() const noexcept { return initialized_; }
 
-  /// Number n of movable joints of the chain.
+  /// Number n of movable joints of the chain; of a tree, of those that mimic no other.
   Eigen::Index jointCount() const;
 
-  /// Their names, in order along the chain from root to tip: the order of all vectors.
+  /// Their names, in order along the chain from root to tip, of a tree in the order of the robot
+  /// description: the order of all vectors.
   const std::vector<std::string>& jointNames() const;
+
+  /// Links that are tips of a tree, in the order of the parameter `tip`: methods that name no tip are
+  /// about the first. Empty: a chain, which has one tip.
+  const std::vector<std::string>& tipNames() const;
 
   /// How each of them moves. A driver may report a continuous joint within one turn: differences of
   /// positions go through `chain_dynamics::unwrap(solver.jointTypes(), reference, q)`.
@@ -227,6 +232,7 @@ class InverseDynamicsSolver {
     std::vector<std::string> warnings;     ///< one sentence each
     /// n; empty: no joint is continuous, all count as revolute
     std::vector<chain_dynamics::JointType> joint_types = {};
+    std::vector<std::string> tip_names = {};  ///< of a tree
   };
 
   /// Makes the solver ready for the robot that the configuration names.

@@ -8,6 +8,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <string>
 #include <utility>
 
 #include "chain_dynamics/spatial.hpp"
@@ -16,8 +18,8 @@
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
-/// Pose, Jacobian and its time derivative of the tip: the link `tip` of a robot description; of a
-/// model file the frame `tip`, else that of the last link.
+/// Pose, Jacobian and its time derivative of the tip: the link `tip` of a robot description, of a tree the
+/// first; of a model file the frame `tip`, else that of the last link.
 ///
 /// Velocities are those of the tip's origin, in the axes of the root frame: the linear velocity in
 /// rows 0 to 2 [m/s], the angular one in rows 3 to 5 [rad/s], as KDL, Pinocchio
@@ -25,6 +27,13 @@ inline namespace v2 {
 class Kinematics : public Capability {
  public:
   ~Kinematics() override;
+
+  /// That of another tip of a tree; until the next initialize().
+  ///
+  /// @throws UninitializedException; InvalidParameterValueException  none of tipNames().
+  const Kinematics& kinematicsOf(const std::string& tip) const {
+    return kinematicsOfTip(tipIndex("kinematicsOf", tip));
+  }
 
   /// @name By value
   /// @{
@@ -88,6 +97,8 @@ class Kinematics : public Capability {
   /// @name What a solver implements
   /// As the compute... of InverseDynamicsSolver.
   /// @{
+  virtual const Kinematics& kinematicsOfTip(std::size_t /*tip*/) const { return *this; }
+
   virtual void computeTipPose(const ConstVectorRef& q,
                               chain_dynamics::Transform<double>& pose) const = 0;
   virtual void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const = 0;

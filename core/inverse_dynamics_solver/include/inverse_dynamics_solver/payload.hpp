@@ -38,6 +38,9 @@ struct RigidBody {
 
   /// Pose of the body's frame in the tip frame: the link `tip` of a URDF, `tip` of a model file.
   chain_dynamics::Transform<double> frame = chain_dynamics::Transform<double>::identity();
+
+  /// Which tip of a tree carries it; empty: the first.
+  std::string tip = {};
 };
 
 bool operator==(const RigidBody& a, const RigidBody& b);
@@ -68,6 +71,7 @@ using Payloads = std::map<std::string, RigidBody>;
 /// | payload.inertia        | 6 doubles | zero; ixx ixy ixz iyy iyz izz about center_of_mass   |
 /// | payload.frame.xyz      | 3 doubles | zero                                                 |
 /// | payload.frame.rpy      | 3 doubles | zero; about the fixed x, y, z axes, in this order    |
+/// | payload.tip            | string    | "": the first tip                                    |
 ///
 /// are of the body named "payload"; `payload.NAME.mass` and so on of the body NAME, which has no
 /// dot, where the source can list its parameters.
@@ -93,7 +97,7 @@ class Payload : public Capability {
   ///
   /// @param name  not empty, printable.
   /// @throws UninitializedException before a successful initialize(); InvalidParameterValueException
-  ///   for a body that can't be [defectOf()]: nothing has changed.
+  ///   for a body that can't be [defectOf()], or a tip that the robot hasn't: nothing has changed.
   void setPayload(const std::string& name, const RigidBody& body);
 
   /// Takes a body away; false if there is none of that name. Throws UninitializedException.

@@ -20,23 +20,26 @@ class Regressor : public Capability {
  public:
   ~Regressor() override;
 
-  /// `Y`, n x 10 n, with `tau = Y p` for any parameters p: ten columns per link for `[m, mcx, mcy,
+  /// Number of links l that joints move: n, of a tree also those whose joints mimic others.
+  Eigen::Index linkCount() const { return linksFor("linkCount"); }
+
+  /// `Y`, n x 10 l, with `tau = Y p` for any parameters p: ten columns per link, in the order of
+  /// their joints, for `[m, mcx, mcy,
   /// mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz]`, I about the origin of the link's frame
   /// [chain_dynamics/regressor.hpp]. Rotor inertia isn't among them: it adds `rotor_inertia qdd`.
   Eigen::MatrixXd getRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
                                const ConstVectorRef& qdd) const {
-    const Eigen::Index n = jointsFor("getRegressor");
-    Eigen::MatrixXd Y(n, 10 * n);
+    Eigen::MatrixXd Y(jointsFor("getRegressor"), 10 * linksFor("getRegressor"));
     getRegressor(q, qd, qdd, Y);
     return Y;
   }
   void getRegressor(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                     MatrixRef Y) const;
 
-  /// Side by side, n x (10 n N). Into memory whose rows don't stand side by side, it allocates.
+  /// Side by side, n x (10 l N). Into memory whose rows don't stand side by side, it allocates.
   Eigen::MatrixXd getRegressorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                                     const ConstStatesRef& qdd) const {
-    Eigen::MatrixXd Y(q.joints, 10 * q.joints * q.count);
+    Eigen::MatrixXd Y(q.joints, 10 * linksFor("getRegressorBatch") * q.count);
     getRegressorBatch(q, qd, qdd, Y);
     return Y;
   }
@@ -47,11 +50,18 @@ class Regressor : public Capability {
   /// @name What a solver implements
   /// As the compute... of InverseDynamicsSolver; a batch by default one state after the other.
   /// @{
+  virtual Eigen::Index linkCountImpl() const { return jointsFor("linkCount"); }
   virtual void computeRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
                                 const ConstVectorRef& qdd, MatrixRef Y) const = 0;
   virtual void computeRegressorBatch(const ConstStates& q, const ConstStates& qd,
                                      const ConstStates& qdd, const StridedMatrices& Y) const;
   /// @}
+
+ private:
+  Eigen::Index linksFor(const char* method) const {
+    jointsFor(method);
+    return linkCountImpl();
+  }
 };
 
 }  // namespace v2

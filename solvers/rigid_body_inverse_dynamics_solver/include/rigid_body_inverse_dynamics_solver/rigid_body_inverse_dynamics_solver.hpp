@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Inverse dynamics of any serial robot, from a URDF or from a model file, by the engine
+/// Inverse dynamics of any serial robot or tree, from a URDF or from a model file, by the engine
 /// chain_dynamics.
 ///
 ///     auto solver = SolverLoader().load(
@@ -9,6 +9,7 @@
 ///     solver->initialize({{"model", "franka_gaz2019_feasible"}});   // a model file
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
@@ -55,6 +56,38 @@ struct ReadyModel {
   chain_dynamics::FastModel fast;
 };
 
+/// Kinematics and wrenches of one tip of a tree, and the torques of the solver.
+class RigidBodyTip : public inverse_dynamics_solver::Kinematics,
+                     public inverse_dynamics_solver::ExternalWrench {
+ public:
+  /// @param with_tip_first  the tree with this tip's branch before all others.
+  RigidBodyTip(const inverse_dynamics_solver::InverseDynamicsSolver& solver,
+               const chain_dynamics::Model& with_tip_first)
+      : solver_(solver), fast_(with_tip_first) {}
+
+ protected:
+  const inverse_dynamics_solver::InverseDynamicsSolver& torqueSolver() const override {
+    return solver_;
+  }
+  void computeTipPose(const ConstVectorRef& q,
+                      chain_dynamics::Transform<double>& pose) const override {
+    fast_.tipPose(q.data(), pose.R.data(), pose.p.data());
+  }
+  void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const override {
+    fast_.tipJacobian(q.data(), J.data(), J.outerStride());
+  }
+  void computeTipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                    MatrixRef dJ) const override {
+    fast_.tipJacobianDerivative(q.data(), qd.data(), dJ.data(), dJ.outerStride());
+  }
+  void computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
+                              const ConstVectorRef& wrench, VectorRef tau) const override;
+
+ private:
+  const inverse_dynamics_solver::InverseDynamicsSolver& solver_;
+  chain_dynamics::FastModel fast_;
+};
+
 /// The engine as a solver.
 ///
 /// Parameters in addition to those of every solver [configuration.hpp]: bodies at the tip
@@ -71,7 +104,8 @@ struct ReadyModel {
 /// Without a model file, friction is that of the description where `urdf_friction` is true, else
 /// zero.
 ///
-/// Chains of up to 64 joints.
+/// Chains of up to 64 joints; with several tips, or joints that mimic others, trees of up to 64
+/// coordinates and 128 joints [chain_dynamics/mechanism.hpp].
 ///
 /// Capabilities: all of rigid bodies; accelerations are refused where the inertia isn't physical,
 /// energies where rows have parameters of their own. TorqueDeviation: of a model file that states it.
@@ -191,6 +225,13 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
                                          const StridedMatrices& dJ) const override {
     initialRobot().fast.tipJacobianDerivativeBatch(q, qd, dJ);
   }
+  const inverse_dynamics_solver::Kinematics& kinematicsOfTip(std::size_t tip) const override {
+    return tip == 0 ? static_cast<const Kinematics&>(*this) : *other_tips_[tip - 1];
+  }
+  const inverse_dynamics_solver::ExternalWrench& externalWrenchAtTip(
+      std::size_t tip) const override {
+    return tip == 0 ? static_cast<const ExternalWrench&>(*this) : *other_tips_[tip - 1];
+  }
   void computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
                               const ConstVectorRef& wrench, VectorRef tau) const override;
   void computeExternalTorquesBatch(const ConstStates& q, WrenchFrame frame,
@@ -209,6 +250,7 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
   void computeTorqueDerivatives(const ConstVectorRef& q, const ConstVectorRef& qd,
                                 const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
                                 MatrixRef dtau_dqdd) const override;
+  Eigen::Index linkCountImpl() const override { return initialRobot().fast.linkCount(); }
   void computeRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
                         const ConstVectorRef& qdd, MatrixRef Y) const override {
     currentRobot()->fast.regressor(q.data(), qd.data(), qdd.data(), Y.data(), Y.outerStride());
@@ -254,6 +296,7 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
   std::unique_ptr<const ReadyModel> robotUnder(const Conditions& conditions) const override;
 
   std::unique_ptr<const chain_dynamics::Model> model_;
+  std::vector<std::unique_ptr<const RigidBodyTip>> other_tips_;  // all but the first
   bool inertia_is_physical_ = false;
 };
 

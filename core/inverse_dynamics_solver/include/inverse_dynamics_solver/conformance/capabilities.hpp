@@ -217,10 +217,11 @@ inline void addMethods(const TorqueDerivatives& d, Eigen::Index n, std::vector<M
                  }});
 }
 
-inline void addMethods(const Regressor& r, Eigen::Index n, std::vector<Method>& all) {
+inline void addMethods(const Regressor& r, Eigen::Index n, Eigen::Index links,
+                       std::vector<Method>& all) {
   using Q = const ConstStates&;
   all.push_back({"getRegressor",
-                 {{{n, 10 * n}}, {}},
+                 {{{n, 10 * links}}, {}},
                  [&r](const State& x) { return Matrices{r.getRegressor(x.q, x.qd, x.qdd)}; },
                  [&r](const State& x, Matrices& out) { r.getRegressor(x.q, x.qd, x.qdd, out[0]); },
                  [&r](Q q, Q qd, Q qdd, const BatchOutputs& out) {
@@ -241,6 +242,7 @@ inline void addMethods(const ForwardDynamics& f, Eigen::Index n, std::vector<Met
 /// of rigid bodies, or energies, where it has these, or isn't initialized.
 inline std::vector<Method> methodsOf(const InverseDynamicsSolver& solver, Eigen::Index n) {
   std::vector<Method> all;
+  const bool fresh = !solver.isInitialized();
   addMethods(solver, n, all);
   if (const auto* k = dynamic_cast<const Kinematics*>(&solver)) addMethods(*k, n, all);
   if (const auto* e = dynamic_cast<const ExternalWrench*>(&solver)) {
@@ -249,8 +251,8 @@ inline std::vector<Method> methodsOf(const InverseDynamicsSolver& solver, Eigen:
   }
   if (const auto* c = dynamic_cast<const CoriolisMatrix*>(&solver)) addMethods(*c, n, all);
   if (const auto* d = dynamic_cast<const TorqueDerivatives*>(&solver)) addMethods(*d, n, all);
-  if (const auto* r = dynamic_cast<const Regressor*>(&solver)) addMethods(*r, n, all);
-  const bool fresh = !solver.isInitialized();
+  if (const auto* r = dynamic_cast<const Regressor*>(&solver))
+    addMethods(*r, n, fresh ? n : r->linkCount(), all);
   if (const auto* e = dynamic_cast<const Energies*>(&solver)) {
     if (fresh || e->hasEnergies()) addMethods(*e, all);
   }

@@ -340,6 +340,18 @@ inline Eigen::VectorXd parametersOf(const std::vector<chain_dynamics::LinkParame
   return p;
 }
 
+/// Those of the chain, or of all branches.
+inline Eigen::VectorXd parametersOf(const chain_dynamics::Model& model) {
+  if (model.branches.empty()) return parametersOf(model.chain.links());
+  Eigen::VectorXd p = Eigen::VectorXd::Zero(10 * linkCount(model.branches));
+  for (const chain_dynamics::Branch& branch : model.branches) {
+    for (std::size_t i = 0; i < branch.link.size(); ++i) {
+      p.segment<10>(10 * branch.link[i]) += branch.chain.links()[i].toVector();
+    }
+  }
+  return p;
+}
+
 /// The torques of a model from a regressor: `(Y - Y_g) p + Y_g p_g + rotor_inertia qdd`, where p is
 /// that of the row, and p_g that of gravity, for models in which these differ.
 inline Eigen::VectorXd torquesOf(const chain_dynamics::Model& model, const Regressor& bodies,
@@ -350,8 +362,9 @@ inline Eigen::VectorXd torquesOf(const chain_dynamics::Model& model, const Regre
   Eigen::VectorXd tau(x.q.size());
   for (Eigen::Index i = 0; i < tau.size(); ++i) {
     const auto row = static_cast<std::size_t>(i);
-    const Eigen::VectorXd p = parametersOf(
-        model.row_parameters.empty() ? model.chain.links() : model.row_parameters[row]);
+    const Eigen::VectorXd p = model.row_parameters.empty()
+                                  ? parametersOf(model)
+                                  : parametersOf(model.row_parameters[row]);
     tau[i] = Y.row(i).dot(p) + model.chain.joints()[row].rotor_inertia * x.qdd[i];
     if (model.gravity_parameters.empty()) continue;
     tau[i] += Y_g.row(i).dot(parametersOf(model.gravity_parameters) - p);
@@ -366,7 +379,7 @@ TEST_P(SolverConformance, RegressorTimesParametersAreTheTorques) {
   std::optional<chain_dynamics::Model> model = GetParam().model();
   if (!model) {
     ASSERT_FALSE(GetParam().robotDescription().empty()) << "the traits must state the model()";
-    model.emplace(chainFromDescription(
+    model.emplace(mechanismFromDescription(
         readConfiguration(GetParam().parameters(), "", GetParam().robotDescription())));
   }
   for (const State& x : randomStates(kStates)) {
