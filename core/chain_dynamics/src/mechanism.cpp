@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -81,7 +82,96 @@ void checkRank(const Mechanism& mechanism) {
       "one without a motion of its own", "leave it out");
 }
 
+void requireCount(const Mechanism& mechanism, const char* what, std::size_t expected,
+                  std::size_t got) {
+  if (expected == got) return;
+  throw ModelError(where(mechanism), what, std::to_string(expected), std::to_string(got), "");
+}
+
+/// Calls `use(branch, joint, link)` of each link in the first branch that moves it.
+template <class Branches, class Use>
+void forEachOwn(Branches& branches, const Use& use) {
+  std::set<Index> seen;
+  for (auto& branch : branches) {
+    for (std::size_t i = 0; i < branch.link.size(); ++i) {
+      if (seen.insert(branch.link[i]).second)
+        use(branch, i, static_cast<std::size_t>(branch.link[i]));
+    }
+  }
+}
+
+/// Of a joint that follows one coordinate alone: that entry of S, otherwise null.
+const Follow* onlyEntry(const Branch& branch, std::size_t joint) {
+  const Follow* only = nullptr;
+  for (const Follow& entry : branch.S) {
+    if (entry.joint != static_cast<Index>(joint) || entry.factor == 0) continue;
+    if (only != nullptr) return nullptr;
+    only = &entry;
+  }
+  return only;
+}
+
+Chain withParts(const Chain& chain, const std::vector<LinkParameters>& links,
+                const std::vector<double>& rotor_inertia) {
+  std::vector<Joint> joints = chain.joints();
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i].rotor_inertia = rotor_inertia[i];
+  return {chain.name(), std::move(joints), links, chain.gravity(), chain.tip()};
+}
+
 }  // namespace
+
+std::vector<LinkParameters> linksOf(const Mechanism& mechanism) {
+  if (mechanism.branches.empty()) return mechanism.coordinates.links();
+  std::vector<LinkParameters> links(static_cast<std::size_t>(linkCount(mechanism.branches)),
+                                    LinkParameters::zero());
+  for (const Branch& branch :
+       mechanism.branches) {  // what is fixed to a link may be in a later one
+    for (std::size_t i = 0; i < branch.link.size(); ++i) {
+      links[static_cast<std::size_t>(branch.link[i])] += branch.chain.links()[i];
+    }
+  }
+  return links;
+}
+
+Mechanism withLinks(const Mechanism& mechanism, const std::vector<LinkParameters>& links,
+                    const Eigen::Ref<const Eigen::VectorXd>& rotor_inertia) {
+  const std::vector<LinkParameters> before = linksOf(mechanism);
+  const std::vector<double> rotors(rotor_inertia.data(),
+                                   rotor_inertia.data() + rotor_inertia.size());
+  const Chain& coordinates = mechanism.coordinates;
+  requireCount(mechanism, "links", before.size(), links.size());
+  requireCount(mechanism, "rotors", coordinates.joints().size(), rotors.size());
+  if (mechanism.branches.empty()) return {withParts(coordinates, links, rotors), {}};
+
+  Mechanism result{withParts(coordinates, coordinates.links(), rotors), mechanism.branches};
+  std::vector<bool> placed(rotors.size(), false);
+  std::map<const Branch*, std::pair<std::vector<LinkParameters>, std::vector<double>>> parts;
+  for (const Branch& branch : result.branches) {
+    const std::size_t m = branch.chain.joints().size();
+    parts[&branch] = {std::vector<LinkParameters>(m, LinkParameters::zero()),
+                      std::vector<double>(m, 0.0)};
+  }
+  forEachOwn(result.branches, [&](const Branch& branch, std::size_t joint, std::size_t link) {
+    auto& [own_links, own_rotors] = parts[&branch];
+    own_links[joint] = links[link];
+    const Follow* const entry = onlyEntry(branch, joint);
+    if (entry == nullptr) return;
+    const auto c = static_cast<std::size_t>(entry->coordinate);
+    if (placed[c]) return;
+    placed[c] = true;
+    own_rotors[joint] = rotors[c] / (entry->factor * entry->factor);
+  });
+  for (std::size_t c = 0; c < rotors.size(); ++c) {
+    if (placed[c] || rotors[c] == 0) continue;
+    throw ModelError(where(mechanism),
+                     "rotor inertia of coordinate " + coordinates.joints()[c].name,
+                     "zero, as no joint follows it alone", std::to_string(rotors[c]), "");
+  }
+  for (Branch& branch : result.branches) {
+    branch.chain = withParts(branch.chain, parts[&branch].first, parts[&branch].second);
+  }
+  return result;
+}
 
 Index linkCount(const std::vector<Branch>& branches) {
   std::set<Index> links;

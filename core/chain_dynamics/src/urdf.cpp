@@ -806,5 +806,23 @@ Mechanism mechanismFromRobot(const RobotDescription& robot, const UrdfOptions& o
   return mechanism;
 }
 
+std::vector<std::string> tipsNamed(const RobotDescription& robot, const std::string& text) {
+  if (text.empty()) return {};
+  if (robot.linkIndex(text) != kNone) return {text};  // whatever its name
+  std::vector<std::string> tips;
+  std::istringstream parts(text);
+  for (std::string tip; std::getline(parts, tip, ',');) {
+    const std::size_t first = tip.find_first_not_of(' ');
+    const std::size_t last = tip.find_last_not_of(' ');
+    tips.push_back(first == std::string::npos ? "" : tip.substr(first, last - first + 1));
+  }
+  return tips;
+}
+
+Mechanism mechanismFromUrdf(const std::string& urdf_xml, const UrdfOptions& options) {
+  const RobotDescription robot = robotFromUrdf(urdf_xml);
+  return mechanismFromRobot(robot, options, tipsNamed(robot, options.tip));
+}
+
 }  // namespace v2
 }  // namespace chain_dynamics

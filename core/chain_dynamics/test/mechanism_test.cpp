@@ -16,7 +16,6 @@
 
 #include "chain_dynamics/fast_model.hpp"
 #include "chain_dynamics/model.hpp"
-#include "chain_dynamics/regressor_gram.hpp"
 #include "urdf_texts.hpp"
 
 namespace chain_dynamics {
@@ -100,6 +99,27 @@ TEST(Mechanism, CountsEachBodyOnce) {
   EXPECT_EQ(mass, 3 * 2.0);
   EXPECT_EQ(linkCount(both.branches), 3);
   EXPECT_EQ(both.branches[1].chain.links()[0].mass, 0);
+}
+
+TEST(Mechanism, ReplacesLinksAndRotors) {
+  UrdfOptions held;  // the right arm, which is fixed to the chest then
+  held.locked_position = [](const std::string& joint) {
+    return joint == "right_arm" ? std::optional<double>(0.3) : std::nullopt;
+  };
+  const Mechanism described = mechanism(torso(), {"left", "right"}, held);
+  ASSERT_EQ(described.branches.size(), 2);
+  std::vector<LinkParameters> links = linksOf(described);
+  ASSERT_EQ(links.size(), 2);
+  EXPECT_EQ(links[0].mass, 2 * 2.0);
+  links[1].mass = 7;
+  const Mechanism changed = withLinks(described, links, Eigen::Vector2d(0.25, 0.5));
+  EXPECT_EQ(changed.branches[0].chain.links()[0].mass, 4);
+  EXPECT_EQ(changed.branches[1].chain.links()[0].mass, 0);
+  EXPECT_EQ(linksOf(changed)[1].mass, 7);
+  EXPECT_EQ(changed.branches[0].chain.joints()[0].rotor_inertia, 0.25);
+  EXPECT_EQ(changed.branches[1].chain.joints()[0].rotor_inertia, 0);
+  EXPECT_EQ(changed.coordinates.joints()[1].rotor_inertia, 0.5);
+  EXPECT_THROW(withLinks(described, {links[0]}, Eigen::Vector2d(0, 0)), ModelError);
 }
 
 TEST(Mechanism, FollowsChainsOfMimics) {
@@ -188,8 +208,6 @@ TEST(Mechanism, MakesAFastModelOfChangedParametersFromAnother) {
   torques(changed, q, q, q, expected);
   EXPECT_LE((found - expected).norm(), 1e-12 * expected.norm());
   EXPECT_THROW(FastModel(Model(mechanism(torso(), {"left"})), original), ModelError);
-  RegressorGram gram(3, 0);
-  EXPECT_THROW(original.addToGram({q, q, q, q, {}}, gram), ModelError);
 }
 
 }  // namespace

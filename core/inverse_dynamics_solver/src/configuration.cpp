@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <variant>
@@ -70,21 +69,6 @@ std::string readTip(const Configuration& configuration) {
     return configuration.get<std::string>("tip").value_or("");
   }
   return chain_dynamics::joined(std::get<std::vector<std::string>>(*value));
-}
-
-/// The tips that a text names; that of one link if it is one's name.
-std::vector<std::string> tipsOf(const chain_dynamics::RobotDescription& robot,
-                                const std::string& text) {
-  if (text.empty()) return {};
-  if (robot.linkIndex(text) != chain_dynamics::RobotDescription::kNone) return {text};
-  std::vector<std::string> tips;
-  std::istringstream parts(text);
-  for (std::string tip; std::getline(parts, tip, ',');) {
-    const std::size_t first = tip.find_first_not_of(' ');
-    const std::size_t last = tip.find_last_not_of(' ');
-    tips.push_back(first == std::string::npos ? "" : tip.substr(first, last - first + 1));
-  }
-  return tips;
 }
 
 void readBatchThreads(Configuration& configuration) {
@@ -199,7 +183,7 @@ struct Description {
     options.allow_massless = configuration.allow_massless;
     options.locked_position = configuration.locked_position;
     options.rotor_inertia = [this](const auto& joint) { return rotors.of(joint); };
-    tips = tipsOf(robot, configuration.tip);
+    tips = tipsNamed(robot, configuration.tip);
   }
 
   RotorInertia rotors;

@@ -67,6 +67,19 @@ constexpr std::size_t kMostMovingJoints = 128;
 /// Number of links of all branches, each counted once.
 Eigen::Index linkCount(const std::vector<Branch>& branches);
 
+/// Parameters of each link, by its number; of a chain those of its links.
+std::vector<LinkParameters> linksOf(const Mechanism& mechanism);
+
+/// The mechanism with other links and rotors. Each link has mass in the first of the branches that move
+/// it, and a rotor stands in a joint that follows its coordinate alone.
+///
+/// @param links          as many as linksOf() gives.
+/// @param rotor_inertia  of each coordinate, seen from it; kg m^2 (prismatic kg).
+/// @throws ModelError  another number of links or rotors, or a rotor other than zero of a coordinate that
+///     no joint follows alone.
+Mechanism withLinks(const Mechanism& mechanism, const std::vector<LinkParameters>& links,
+                    const Eigen::Ref<const Eigen::VectorXd>& rotor_inertia);
+
 /// Rejects branches that don't fit the coordinates: wrong sizes, numbers that aren't finite, too many
 /// joints, or a coordinate that moves no joint of its own (S without full column rank).
 ///
@@ -90,6 +103,12 @@ void checkMechanism(const Mechanism& mechanism);
 /// Threads: safe.
 Mechanism mechanismFromRobot(const RobotDescription& robot, const UrdfOptions& options,
                              const std::vector<std::string>& tips);
+
+/// The tips that a text names: one, several with commas between them, "*"; none if it is empty.
+std::vector<std::string> tipsNamed(const RobotDescription& robot, const std::string& text);
+
+/// mechanismFromRobot() of a URDF and of the tips that `options.tip` names.
+Mechanism mechanismFromUrdf(const std::string& urdf_xml, const UrdfOptions& options = {});
 
 }  // namespace v2
 }  // namespace chain_dynamics
