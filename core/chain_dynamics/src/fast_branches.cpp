@@ -3,9 +3,11 @@
 #include "fast_branches.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "chain_dynamics/friction.hpp"
 #include "chain_dynamics/scratch.hpp"
@@ -593,6 +595,90 @@ void tipJacobianDerivativeMany(const Robot& robot, int structure, std::ptrdiff_t
   }
 }
 
+/// The square root of the weight of a joint's row.
+double scaleOf(const fast::GramInputs& inputs, Index joint, std::ptrdiff_t state) {
+  if (inputs.weights == nullptr) return 1;
+  const Samples& weights = *inputs.weights;
+  return std::sqrt(weights.data[joint * weights.joint_step + state * weights.state_step]);
+}
+
+/// Rows of one state of all joints times a scale, each to state `k` of its panel of kGramStates rows:
+/// the links that it moves.
+void writeLinks(const FastBranches& robot, const Eigen::MatrixXd& Y, const fast::GramInputs& inputs,
+                std::ptrdiff_t state, Index k, double* panels) {
+  for (Index j = 0; j < robot.joints; ++j) {
+    const std::vector<int>& moved = robot.moved[static_cast<std::size_t>(j)];
+    const std::ptrdiff_t size = fast::linksRow(static_cast<int>(moved.size()), 0);
+    const double scale = scaleOf(inputs, j, state);
+    double* to = panels + k * size;
+    for (const int link : moved) {
+      for (Index c = 0; c < 10; ++c) *to++ = scale * Y(j, 10 * link + c);
+    }
+    panels += fast::kGramStates * size;
+  }
+}
+
+/// The same of own columns and torque.
+void writeOwn(const FastBranches& robot, const fast::GramInputs& inputs, std::ptrdiff_t state,
+              Index k, double* panels) {
+  const std::ptrdiff_t size = fast::ownRow(inputs.column_count);
+  for (Index j = 0; j < robot.joints; ++j, panels += fast::kGramStates * size) {
+    const double scale = scaleOf(inputs, j, state);
+    for (int c = 0; c <= inputs.column_count; ++c) {
+      const Samples& from = c < inputs.column_count ? inputs.columns[c] : inputs.tau;
+      panels[k * size + c] = scale * from.data[j * from.joint_step + state * from.state_step];
+    }
+  }
+}
+
+/// Adds the products of the numbers of `states` rows: the upper triangle of sums that stand row by row
+/// is the lower one of their columns.
+void addProducts(const FastBranches& robot, Index states, const fast::GramInputs& inputs,
+                 const double* links, const double* own, double* sums) {
+  const Index of_own = fast::ownRow(inputs.column_count);
+  for (Index j = 0; j < robot.joints; ++j) {
+    const Index of_links =
+        fast::linksRow(static_cast<int>(robot.moved[static_cast<std::size_t>(j)].size()), 0);
+    const Index size = of_own + of_links;
+    const Eigen::Map<const Eigen::MatrixXd> A(own, of_own, states), B(links, of_links, states);
+    Eigen::Map<Eigen::MatrixXd> sum(sums, size, size);
+    sum.topLeftCorner(of_own, of_own).selfadjointView<Eigen::Lower>().rankUpdate(A);
+    sum.bottomLeftCorner(of_links, of_own).noalias() += B * A.transpose();
+    if (inputs.links) {
+      sum.bottomRightCorner(of_links, of_links).selfadjointView<Eigen::Lower>().rankUpdate(B);
+    }
+    own += fast::kGramStates * of_own;
+    links += fast::kGramStates * of_links;
+    sums += size * size;
+  }
+}
+
+void gramMany(const Robot& of, std::ptrdiff_t states, const fast::GramInputs& inputs,
+              const fast::GramMemory& to) {
+  const FastBranches& robot = branchesOf(of);
+  const Index n = robot.joints;
+  Eigen::MatrixXd Y(n, 10 * robot.links);
+  Numbers q{}, qd{}, qdd{};
+  std::ptrdiff_t part_size = 0;
+  for (const std::vector<int>& moved : robot.moved) {
+    part_size += fast::kGramStates * fast::linksRow(static_cast<int>(moved.size()), 0);
+  }
+  for (std::ptrdiff_t part = 0, first = 0; first < states; ++part, first += fast::kGramStates) {
+    const auto count = std::min<std::ptrdiff_t>(fast::kGramStates, states - first);
+    double* const made = to.links + (to.keep ? part * part_size : 0);
+    for (std::ptrdiff_t k = 0; k < count; ++k) {
+      const std::ptrdiff_t state = first + k;
+      writeOwn(robot, inputs, state, k, to.own);
+      if (inputs.rows != nullptr) continue;
+      regressor(robot, stateOf(inputs.q, n, state, q), stateOf(inputs.qd, n, state, qd),
+                stateOf(inputs.qdd, n, state, qdd), Y.data(), n);
+      writeLinks(robot, Y, inputs, state, k, made);
+    }
+    addProducts(robot, count, inputs,
+                inputs.rows != nullptr ? inputs.rows + part * part_size : made, to.own, to.sums);
+  }
+}
+
 int structureOf(const Robot& /*robot*/) { return 0; }
 
 /// Entry (row, column) of S is one, and it is the only one of its row; s is zero.
@@ -652,7 +738,7 @@ fast::ManyKernels manyBranchKernels() {
           tipPoseMany,
           tipJacobianMany,
           tipJacobianDerivativeMany,
-          nullptr,
+          gramMany,
           nullptr};
 }
 

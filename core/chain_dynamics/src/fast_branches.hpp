@@ -33,6 +33,7 @@ struct FastBranches : fast::Robot {
   std::unique_ptr<const Model> model;
   std::vector<FastBranch> branches;
   int links = 0;  ///< which the regressor has ten columns each of; of a chain, too
+  std::vector<std::vector<int>> moved;  ///< by each coordinate: links, ascending; empty: a chain
   /// Computes friction; null: there is none, or it depends on load.
   std::unique_ptr<const FastModel> friction_alone;
 };

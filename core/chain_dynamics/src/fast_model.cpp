@@ -100,6 +100,7 @@ struct FastModel::Data {
       }
     }
     robot.links = static_cast<int>(links.size());
+    fillMoved();
     robot.load_friction = chain_dynamics::frictionDependsOnLoad(model);
     if (!model.friction.empty() && !robot.load_friction) {
       Model friction_alone(model.chain);
@@ -110,6 +111,21 @@ struct FastModel::Data {
     }
     kernels = branchKernels(robot.branches.front().fast->kernels_->name);
     many = manyBranchKernels();
+  }
+
+  /// A coordinate moves the links of the joints that follow it and of those after them.
+  void fillMoved() {
+    std::vector<std::set<int>> moved(static_cast<std::size_t>(robot.joints));
+    for (const FastBranch& of : robot.branches) {
+      for (const Follow& entry : of.branch.S) {
+        for (const int i : of.own) {
+          if (i < entry.joint) continue;
+          const Eigen::Index link = of.branch.link[static_cast<std::size_t>(i)];
+          moved[static_cast<std::size_t>(entry.coordinate)].insert(static_cast<int>(link));
+        }
+      }
+    }
+    for (const std::set<int>& links : moved) robot.moved.emplace_back(links.begin(), links.end());
   }
 
   void fillRowLanes() {
@@ -274,6 +290,12 @@ void FastModel::gravityVector(const double* q, double* g) const {
 }
 
 Eigen::Index FastModel::linkCount() const { return data_->robot.links; }
+
+RegressorGram FastModel::emptyGram(Eigen::Index own_columns) const {
+  const FastBranches& robot = data_->robot;
+  if (robot.moved.empty()) return RegressorGram(robot.joints, own_columns);
+  return {robot.moved, robot.links, own_columns};
+}
 
 bool FastModel::frictionDependsOnLoad() const { return data_->robot.load_friction; }
 

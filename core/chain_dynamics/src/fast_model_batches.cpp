@@ -9,6 +9,7 @@
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/fast_model.hpp"
 #include "fast/robot.hpp"
+#include "fast_branches.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -40,6 +41,19 @@ void requireStates(const char* what, const ConstStates& states, Index joints, In
   throw ModelError("samples of a Gram matrix", what,
                    std::to_string(joints) + " x " + std::to_string(count),
                    std::to_string(states.joints) + " x " + std::to_string(states.count), "");
+}
+
+/// Of sums for another robot.
+void requireLinks(const fast::Robot& robot, Index joint, const std::vector<int>& links) {
+  const auto j = static_cast<std::size_t>(joint);
+  const auto& moved = static_cast<const FastBranches&>(robot).moved;
+  const auto n = static_cast<std::size_t>(robot.joints);
+  const bool fits = moved.empty() ? links.size() == n - j && links.front() == static_cast<int>(j)
+                                  : links == moved[j];
+  if (fits) return;
+  throw ModelError("Gram matrix of the regressor",
+                   "links that joint " + std::to_string(j + 1) + " moves", "those of this robot",
+                   "others", "make it by emptyGram()");
 }
 
 }  // namespace
@@ -158,14 +172,15 @@ void FastModel::regressorBatch(ConstStates q, ConstStates qd, ConstStates qdd,
 void FastModel::addToGram(const GramSamples& given, RegressorGram& gram) const {
   const Index n = robot().joints;
   const Index count = given.q.count;
-  if (many_->gram == nullptr) {
-    throw ModelError("Gram matrix of the regressor", "robot", "a chain", "a mechanism of branches",
-                     "sum the products of regressor() rows");
-  }
   if (gram.joints() != n || gram.ownColumns() != static_cast<Index>(given.own_columns.size())) {
     throw ModelError("Gram matrix of the regressor", "joints x own columns",
                      std::to_string(n) + " x " + std::to_string(given.own_columns.size()),
                      std::to_string(gram.joints()) + " x " + std::to_string(gram.ownColumns()), "");
+  }
+  std::ptrdiff_t row_numbers = 0;  // of all joints
+  for (Index j = 0; j < n; ++j) {
+    requireLinks(robot(), j, gram.moved_[static_cast<std::size_t>(j)]);
+    row_numbers += fast::linksRow(static_cast<int>(gram.storedLinks(j) / 10), 0);
   }
   requireStates("q", given.q, n, count);
   requireStates("qd", given.qd, n, count);
@@ -187,8 +202,7 @@ void FastModel::addToGram(const GramSamples& given, RegressorGram& gram) const {
   }
   const Index parts =
       given.keep != nullptr ? (count + fast::kGramStates - 1) / fast::kGramStates : 1;
-  const auto size =
-      static_cast<std::size_t>(parts * fast::kGramStates * fast::linksRows(static_cast<int>(n)));
+  const auto size = static_cast<std::size_t>(parts * fast::kGramStates * row_numbers);
   RegressorRows here;
   RegressorRows& made = given.keep != nullptr ? *given.keep : here;
   if (given.rows == nullptr) made.numbers_.assign(size, 0.0);

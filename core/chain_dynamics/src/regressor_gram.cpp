@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "chain_dynamics/error.hpp"
 #include "fast/robot.hpp"
@@ -28,33 +30,54 @@ void requireSize(const char* what, Index rows, Index cols, Index got_rows, Index
                    sizeText(got_rows, got_cols), "");
 }
 
-}  // namespace
-
-RegressorGram::RegressorGram(Index joints, Index own_columns)
-    : joints_(joints), own_columns_(own_columns) {
+/// The links that each joint of a chain moves.
+std::vector<std::vector<int>> suffixes(Index joints) {
   if (joints < 1 || joints > fast::kMaxJoints) {
     throw ModelError("Gram matrix of the regressor", "joints",
                      "1 to " + std::to_string(fast::kMaxJoints), std::to_string(joints), "");
   }
+  std::vector<std::vector<int>> moved(static_cast<std::size_t>(joints));
+  for (Index j = 0; j < joints; ++j) {
+    for (Index i = j; i < joints; ++i)
+      moved[static_cast<std::size_t>(j)].push_back(static_cast<int>(i));
+  }
+  return moved;
+}
+
+}  // namespace
+
+RegressorGram::RegressorGram(Index joints, Index own_columns)
+    : RegressorGram(suffixes(joints), joints, own_columns) {}
+
+RegressorGram::RegressorGram(std::vector<std::vector<int>> moved, Index links, Index own_columns)
+    : moved_(std::move(moved)), links_(links), own_columns_(own_columns) {
   if (own_columns < 0) {
     throw ModelError("Gram matrix of the regressor", "own columns", "0 or more",
                      std::to_string(own_columns), "");
   }
-  sums_.resize(static_cast<std::size_t>(firstSum(joints)), 0.0);
+  sums_.resize(static_cast<std::size_t>(firstSum(joints())), 0.0);
+}
+
+void RegressorGram::requireRobot(const RegressorGram& other) const {
+  requireSize("joints", joints(), 1, other.joints(), 1);
+  if (moved_ == other.moved_) return;
+  throw ModelError("Gram matrix of the regressor", "links that each joint moves", "the same",
+                   "others", "add sums of one robot");
 }
 
 void RegressorGram::add(const RegressorGram& other) {
-  requireSize("joints x own columns", joints_, own_columns_, other.joints_, other.own_columns_);
+  requireSize("joints x own columns", joints(), own_columns_, other.joints(), other.own_columns_);
+  requireRobot(other);
   std::transform(sums_.begin(), sums_.end(), other.sums_.begin(), sums_.begin(), std::plus<>());
   samples_ += other.samples_;
 }
 
 void RegressorGram::addLinks(const RegressorGram& other) {
-  requireSize("joints", joints_, 1, other.joints_, 1);
-  for (Index j = 0; j < joints_; ++j) {
+  requireRobot(other);
+  for (Index j = 0; j < joints(); ++j) {
     const double* from = other.sums_.data() + other.firstLinks(j);
     double* to = sums_.data() + firstLinks(j);
-    const Index links = kParameters * (joints_ - j);
+    const Index links = storedLinks(j);
     for (Index a = 0; a < links; ++a, from += other.storedRow(j), to += storedRow(j)) {
       for (Index b = a; b < links; ++b) to[b] += from[b];
     }
@@ -63,7 +86,7 @@ void RegressorGram::addLinks(const RegressorGram& other) {
 
 std::ptrdiff_t RegressorGram::storedRow(Index joint) const {
   return fast::ownRow(static_cast<int>(own_columns_)) +
-         fast::linksRow(static_cast<int>(joints_), static_cast<int>(joint));
+         fast::linksRow(static_cast<int>(storedLinks(joint) / kParameters), 0);
 }
 
 std::ptrdiff_t RegressorGram::firstSum(Index joint) const {
@@ -77,38 +100,45 @@ std::ptrdiff_t RegressorGram::firstLinks(Index joint) const {
 }
 
 void RegressorGram::rowGram(Index joint, Eigen::Ref<Eigen::MatrixXd> G) const {
-  if (joint < 0 || joint >= joints_) {
-    throw ModelError("Gram matrix of the regressor", "joint", "0 to " + std::to_string(joints_ - 1),
-                     std::to_string(joint), "");
+  if (joint < 0 || joint >= joints()) {
+    throw ModelError("Gram matrix of the regressor", "joint",
+                     "0 to " + std::to_string(joints() - 1), std::to_string(joint), "");
   }
   requireSize("matrix", rowSize(), rowSize(), G.rows(), G.cols());
   G.setZero();
-  const Index rigid = kParameters * joints_, before = kParameters * joint;
+  const Index rigid = kParameters * links_, stored = storedLinks(joint);
   const std::ptrdiff_t step = storedRow(joint);
   const double* row = sums_.data() + firstSum(joint);
   for (Index a = rigid; a < rowSize(); ++a, row += step) {
     for (Index b = a; b < rowSize(); ++b) G(a, b) = G(b, a) = row[b - rigid];
     const double* links = row + fast::ownRow(static_cast<int>(own_columns_));
-    for (Index b = before; b < rigid; ++b) G(a, b) = G(b, a) = links[b - before];
+    for (Index k = 0; k < stored; ++k) {
+      const Index b = columnOf(joint, k);
+      G(a, b) = G(b, a) = links[k];
+    }
   }
   row = sums_.data() + firstLinks(joint);
-  for (Index a = before; a < rigid; ++a, row += step) {
-    for (Index b = a; b < rigid; ++b) G(a, b) = G(b, a) = row[b - before];
+  for (Index k = 0; k < stored; ++k, row += step) {
+    const Index a = columnOf(joint, k);
+    for (Index i = k; i < stored; ++i) {
+      const Index b = columnOf(joint, i);
+      G(a, b) = G(b, a) = row[i];
+    }
   }
 }
 
 void RegressorGram::normalEquations(const Eigen::Ref<const Eigen::VectorXd>& weights,
                                     Eigen::Ref<Eigen::MatrixXd> A,
                                     Eigen::Ref<Eigen::VectorXd> b) const {
-  requireSize("weights", joints_, 1, weights.rows(), weights.cols());
+  requireSize("weights", joints(), 1, weights.rows(), weights.cols());
   requireSize("A", unknowns(), unknowns(), A.rows(), A.cols());
   requireSize("b", unknowns(), 1, b.rows(), b.cols());
   A.setZero();
   b.setZero();
   Eigen::MatrixXd G(rowSize(), rowSize());
-  const Index rigid = kParameters * joints_;
+  const Index rigid = kParameters * links_;
   const Index tau = rowSize() - 1;
-  for (Index j = 0; j < joints_; ++j) {
+  for (Index j = 0; j < joints(); ++j) {
     rowGram(j, G);
     const double w = weights[j];
     const Index own = rigid + j * own_columns_;

@@ -12,7 +12,10 @@
 
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/fast_model.hpp"
+#include "chain_dynamics/mechanism.hpp"
+#include "chain_dynamics/robot_description.hpp"
 #include "example_models.hpp"
+#include "urdf_texts.hpp"
 
 namespace chain_dynamics {
 namespace {
@@ -41,15 +44,15 @@ std::vector<MatrixXd> sumsOfSingleCalls(const FastModel& fast, const Inputs& in,
                                         const std::vector<MatrixXd>& own, const MatrixXd& weights) {
   const Index n = in.q.rows();
   const auto columns = static_cast<Index>(own.size());
-  const Index size = 10 * n + columns + 1;
+  const Index rigid = 10 * fast.linkCount(), size = rigid + columns + 1;
   std::vector<MatrixXd> sums(static_cast<std::size_t>(n), MatrixXd::Zero(size, size));
-  MatrixXd Y(n, 10 * n);
+  MatrixXd Y(n, rigid);
   for (Index k = 0; k < in.q.cols(); ++k) {
     fast.regressor(in.q.col(k).data(), in.qd.col(k).data(), in.qdd.col(k).data(), Y.data(), n);
     for (Index j = 0; j < n; ++j) {
       VectorXd row(size);
-      row.head(10 * n) = Y.row(j).transpose();
-      for (Index c = 0; c < columns; ++c) row[10 * n + c] = own[static_cast<std::size_t>(c)](j, k);
+      row.head(rigid) = Y.row(j).transpose();
+      for (Index c = 0; c < columns; ++c) row[rigid + c] = own[static_cast<std::size_t>(c)](j, k);
       row[size - 1] = in.tau(j, k);
       sums[static_cast<std::size_t>(j)] += weights(j, k) * row * row.transpose();
     }
@@ -83,10 +86,27 @@ std::vector<MatrixXd> ownColumns(const Inputs& in, int count) {
   return {all.begin(), all.begin() + count};
 }
 
+/// A waist with two arms, whose links and coordinates stand in the order of no branch; one arm follows,
+/// and has a joint of its own.
+Model tree() {
+  const std::string places = "<origin xyz='0.1 0.2 0.3' rpy='1 0.5 -0.3'/><axis xyz='0.6 0 0.8'/>";
+  const std::string follows = "<mimic joint='right_arm' multiplier='-0.7' offset='0.4'/>";
+  return Model(mechanismFromRobot(
+      robotFromUrdf(
+          robot(link("base") + link("chest") + link("left") + link("right") + link("hand") +
+                joint("right_arm", "revolute", "chest", "right", places + kLimit) +
+                joint("wrist", "prismatic", "left", "hand", places + kLimit) +
+                joint("waist", "revolute", "base", "chest", places + kLimit) +
+                joint("left_arm", "revolute", "chest", "left", places + follows + kLimit))),
+      {}, {"*"}));
+}
+
 class RegressorGramOn : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(RegressorGramOn, IsThatOfSingleRegressors) {
-  for (const auto& [name, model] : models()) {
+  std::vector<NamedModel> all = models();
+  all.push_back({"tree", tree()});
+  for (const auto& [name, model] : all) {
     const Index n = model.chain.jointCount();
     SCOPED_TRACE(name);
     if (n > 13) continue;
@@ -98,8 +118,8 @@ TEST_P(RegressorGramOn, IsThatOfSingleRegressors) {
       const RowMajor q = in.q;  // in another layout
       const RowMajor tau = in.tau;
       const MatrixXd weights = in.tau.cwiseAbs();
-      RegressorGram gram(n, columns);
-      RegressorGram weighted(n, columns);
+      RegressorGram gram = fast.emptyGram(columns);
+      RegressorGram weighted = fast.emptyGram(columns);
       GramSamples samples{q, in.qd, in.qdd, tau, {own.begin(), own.end()}};
       fast.addToGram(samples, gram);
       samples.weights = ConstStates(weights);
@@ -108,11 +128,11 @@ TEST_P(RegressorGramOn, IsThatOfSingleRegressors) {
       expectEqual(gram, sumsOfSingleCalls(fast, in, own, MatrixXd::Ones(n, count)));
       expectEqual(weighted, sumsOfSingleCalls(fast, in, own, weights));
       RegressorRows kept;
-      RegressorGram links(n);
+      RegressorGram links = fast.emptyGram();
       fast.addToGram({q, in.qd, in.qdd, tau, {}, samples.weights, true, &kept}, links);
       samples.links = false;
       for (const RegressorRows* rows : {&kept, static_cast<RegressorRows*>(nullptr)}) {
-        RegressorGram apart(n, columns);
+        RegressorGram apart = fast.emptyGram(columns);
         samples.rows = rows;
         fast.addToGram(samples, apart);
         apart.addLinks(links);
@@ -168,6 +188,35 @@ TEST(RegressorGram, ItsNormalEquationsFindParametersAndFriction) {
   const VectorXd x = A.completeOrthogonalDecomposition().solve(b);
   for (Index j = 0; j < 4; ++j) EXPECT_NEAR(x[40 + j], 3.0 + j, 1e-5);
   EXPECT_LE(largest(A * x - b), 1e-9 * largest(b));
+}
+
+TEST(RegressorGram, OfATreeHasTheUnknownsOfAllLinks) {
+  const FastModel fast(tree());
+  const RegressorGram gram = fast.emptyGram(2);
+  EXPECT_EQ(gram.joints(), 3);
+  EXPECT_EQ(gram.links(), 4);
+  EXPECT_EQ(gram.unknowns(), 4 * 10 + 3 * 2);
+  // coordinates: right_arm, which the left one follows, wrist, waist
+  EXPECT_EQ(gram.firstLink(0), 0);
+  EXPECT_EQ(gram.firstLink(1), 1);
+}
+
+TEST(RegressorGram, RefusesSumsOfAnotherRobot) {
+  using ::testing::HasSubstr;
+  const FastModel fast(tree());
+  const Inputs in(3, 5);
+  RegressorGram of_chain(3);
+  EXPECT_THAT(errorOf([&] {
+                fast.addToGram({in.q, in.qd, in.qdd, in.tau}, of_chain);
+              }),
+              HasSubstr("make it by emptyGram()"));
+  RegressorGram of_tree = fast.emptyGram();
+  const FastModel chain(Model(randomChain(3)));
+  EXPECT_THAT(errorOf([&] {
+                chain.addToGram({in.q, in.qd, in.qdd, in.tau}, of_tree);
+              }),
+              HasSubstr("make it by emptyGram()"));
+  EXPECT_THAT(errorOf([&] { of_chain.add(of_tree); }), HasSubstr("add sums of one robot"));
 }
 
 TEST(RegressorGram, RefusesOtherSizes) {

@@ -156,9 +156,13 @@ class FastModel {
   void tipJacobianDerivativeBatch(ConstStates q, ConstStates qd, StridedMatrices dJ) const;
   /// As regressor(); n x 10 linkCount() each. Allocates where the robot is a mechanism.
   void regressorBatch(ConstStates q, ConstStates qd, ConstStates qdd, StridedMatrices Y) const;
+  /// Gram matrices of this robot, without samples. Allocates.
+  ///
+  /// @throws ModelError  a negative number of columns.
+  RegressorGram emptyGram(Eigen::Index own_columns = 0) const;
   /// Adds samples to the Gram matrices of the regressor's rows [regressor_gram.hpp].
   ///
-  /// @throws ModelError  another number of joints, samples or columns; a mechanism.
+  /// @throws ModelError  another number of joints, samples or columns; sums of another robot.
   void addToGram(const GramSamples& samples, RegressorGram& gram) const;
   /// @}
 

@@ -3,7 +3,7 @@
 /// @file
 /// What a fit of inertial parameters needs of measured motions: sums that don't grow with them.
 ///
-///     RegressorGram gram(n, 3);                                     // n joints, 3 friction columns
+///     RegressorGram gram = fast.emptyGram(3);                       // of 3 friction columns
 ///     const std::vector<ConstStates> friction = {qd, signs, ones};  // n x N each
 ///     fast.addToGram({q, qd, qdd, tau, friction}, gram);            // any number of times
 ///     gram.normalEquations(weights, A, b);                          // A x = b
@@ -29,7 +29,7 @@
 namespace chain_dynamics {
 inline namespace v2 {
 
-/// Rows Y_j of samples, which takes them 8 bytes for each of about 5 n (n + 1) numbers.
+/// Rows Y_j of samples, which takes them 8 bytes for each of about 5 n (n + 1) numbers of a chain.
 class RegressorRows {
   friend class FastModel;
   Eigen::Index samples_ = 0;
@@ -59,31 +59,37 @@ struct GramSamples {
 /// then add().
 class RegressorGram {
  public:
-  /// Zero, for robots of so many joints and rows with so many columns of the joint's own.
+  /// Zero, for chains of so many joints and rows with so many columns of the joint's own; of any robot:
+  /// FastModel::emptyGram().
   ///
   /// @throws ModelError  no joint, more than 64, or a negative number of columns.
   explicit RegressorGram(Eigen::Index joints, Eigen::Index own_columns = 0);
 
-  Eigen::Index joints() const { return joints_; }
+  Eigen::Index joints() const { return static_cast<Eigen::Index>(moved_.size()); }
+  Eigen::Index links() const { return links_; }  ///< of a chain as many as joints
   Eigen::Index ownColumns() const { return own_columns_; }
   /// How many have been added.
   Eigen::Index samples() const { return samples_; }
-  /// Numbers of a row r_j: 10 n of the regressor, own columns, torque.
-  Eigen::Index rowSize() const { return 10 * joints_ + own_columns_ + 1; }
-  /// Unknowns of the normal equations: 10 n parameters, then each joint's own in turn.
-  Eigen::Index unknowns() const { return (10 + own_columns_) * joints_; }
+  /// Numbers of a row r_j: ten of each link, own columns, torque.
+  Eigen::Index rowSize() const { return 10 * links_ + own_columns_ + 1; }
+  /// Unknowns of the normal equations: ten parameters of each link, then each joint's own in turn.
+  Eigen::Index unknowns() const { return 10 * links_ + own_columns_ * joints(); }
+  /// The first link that joint j moves: columns of those before it are zero in its row.
+  Eigen::Index firstLink(Eigen::Index joint) const {
+    return moved_[static_cast<std::size_t>(joint)].front();
+  }
 
   /// Adds the samples of another one.
   ///
-  /// @throws ModelError  other numbers of joints or columns.
+  /// @throws ModelError  other numbers of joints, links or columns.
   void add(const RegressorGram& other);
 
   /// Adds the products of two numbers of Y_j of another one, whose own columns don't matter.
   ///
-  /// @throws ModelError  another number of joints.
+  /// @throws ModelError  another number of joints or links.
   void addLinks(const RegressorGram& other);
 
-  /// G_j, symmetric; the columns of links before joint j are zero.
+  /// G_j, symmetric; the columns of links that joint j doesn't move are zero.
   ///
   /// @param joint   0 .. n - 1.
   /// @param[out] G  rowSize() x rowSize(), entries in the order of r_j.
@@ -104,13 +110,28 @@ class RegressorGram {
  private:
   friend class FastModel;
 
-  /// Where the matrix of a joint begins: own columns and torque, then links from the joint's own on.
+  /// For each joint the numbers of the links that it moves, ascending.
+  RegressorGram(std::vector<std::vector<int>> moved, Eigen::Index links, Eigen::Index own_columns);
+
+  /// Where the matrix of a joint begins: own columns and torque, then the links that it moves.
   std::ptrdiff_t firstSum(Eigen::Index joint) const;
   std::ptrdiff_t firstLinks(Eigen::Index joint) const;
   /// Numbers of a row there.
   std::ptrdiff_t storedRow(Eigen::Index joint) const;
 
-  Eigen::Index joints_, own_columns_, samples_ = 0;
+  /// Numbers of Y_j that are stored, and the column of the k-th one.
+  Eigen::Index storedLinks(Eigen::Index joint) const {
+    return 10 * static_cast<Eigen::Index>(moved_[static_cast<std::size_t>(joint)].size());
+  }
+  Eigen::Index columnOf(Eigen::Index joint, Eigen::Index k) const {
+    return Eigen::Index{10} *
+               moved_[static_cast<std::size_t>(joint)][static_cast<std::size_t>(k / 10)] +
+           k % 10;
+  }
+  void requireRobot(const RegressorGram& other) const;
+
+  std::vector<std::vector<int>> moved_;
+  Eigen::Index links_, own_columns_, samples_ = 0;
   std::vector<double> sums_;  // one matrix after the other: src/fast/gram.hpp
 };
 
