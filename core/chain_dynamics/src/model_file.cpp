@@ -12,6 +12,7 @@
 #include "chain_dynamics/joint_frame.hpp"
 #include "chain_dynamics/located_yaml.hpp"
 #include "model_file_joint.hpp"
+#include "model_file_tree.hpp"
 #include "plausibility.hpp"
 
 namespace chain_dynamics {
@@ -94,10 +95,15 @@ void addIdentified(const std::vector<JointEntry>& entries, const Conventions& co
 
 Model makeModel(const std::string& file, const std::string& name,
                 const std::vector<JointEntry>& entries, const Conventions& conventions,
-                const Eigen::Vector3d& gravity, const Transform<double>& X_U_tip) {
+                const Eigen::Vector3d& gravity, const std::vector<TipEntry>& tips) {
   try {
-    Model model(makeChain(name, entries, gravity, X_U_tip));
-    addIdentified(entries, conventions, model);
+    const auto chain = [&](const std::vector<JointEntry>& joints,
+                           const Transform<double>& X_U_tip) {
+      return makeChain(name, joints, gravity, X_U_tip);
+    };
+    Model model = conventions.tree ? Model(treeOf(name, entries, tips, gravity, chain))
+                                   : Model(chain(entries, tips.front().X_U_tip));
+    addIdentified(coordinatesOf(entries), conventions, model);
     checkModel(model);
     return model;
   } catch (const ModelError& error) {
@@ -183,19 +189,24 @@ Model readModel(const LocatedValue& document) {
   const std::string name = file.required("name").text();
   const std::string source = file.required("source").text();
   const std::string validity = file.required("validity").text();
-  const Conventions conventions = readConventions(file, schema);
+  Conventions conventions = readConventions(file, schema);
   const Eigen::Vector3d gravity = readVector(file.required("gravity"));
-  Transform<double> X_U_tip = Transform<double>::identity();
-  if (const auto tip = file.optional("tip")) {
+  std::vector<TipEntry> tips{{"", "", "", Transform<double>::identity()}};
+  if (const auto several = file.optional("tips")) {
+    if (schema < 2)
+      several->fail("no such key in schema 1", "write schema: 2 at the top of the file");
+    tips = readTips(*several);
+    conventions.tree = true;
+  } else if (const auto tip = file.optional("tip")) {
     LocatedMap map = tip->map();
-    X_U_tip = readPose(map);
+    tips.front().X_U_tip = readPose(map);
     map.rejectOthers();
   }
   const std::vector<JointEntry> entries = readJoints(file.required("joints"), conventions);
   const auto checks = file.optional("checks");
   file.rejectOthers();
 
-  Model model = makeModel(document.file(), name, entries, conventions, gravity, X_U_tip);
+  Model model = makeModel(document.file(), name, entries, conventions, gravity, tips);
   model.source = source;
   model.validity = validity;
   if (checks) verifyChecks(checks->map(), model);

@@ -2,6 +2,7 @@
 
 #include "model_file_joint.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -237,6 +238,31 @@ void readParameters(LocatedMap& map, const Conventions& conventions, std::size_t
   entry.own.push_back(link(own, conventions.parameters));
 }
 
+/// Where the joint is in a tree, and what it follows.
+void readPlaceInTree(LocatedMap& map, JointEntry& entry) {
+  if (const auto parent = map.optional("parent")) entry.parent = parent->text();
+  const auto mimic = map.optional("mimic");
+  if (!mimic) return;
+  const std::vector<LocatedValue> all =
+      mimic->isList() ? mimic->entries() : std::vector<LocatedValue>{*mimic};
+  if (all.empty()) mimic->fail("at least one joint that it follows");
+  for (const LocatedValue& one : all) {
+    LocatedMap followed = one.map();
+    entry.mimics.push_back({followed.required("joint").text(), 1});
+    if (const auto factor = followed.optional("multiplier")) {
+      entry.mimics.back().multiplier = factor->number();
+    }
+    if (const auto offset = followed.optional("offset")) entry.offset += offset->number();
+    followed.rejectOthers();
+  }
+  for (const char* const key : {"limits", "drive_gain", "friction", "torque_deviation", "seen"}) {
+    if (const auto value = map.optional(key)) {
+      value->fail("no such key of a joint that mimics another one",
+                  "state it of joint " + entry.mimics.front().joint);
+    }
+  }
+}
+
 JointEntry readJoint(const LocatedValue& value, const Conventions& conventions,
                      std::size_t joints) {
   JointEntry entry;
@@ -265,7 +291,8 @@ JointEntry readJoint(const LocatedValue& value, const Conventions& conventions,
   if (const auto rotor_inertia = map.optional("rotor_inertia")) {
     entry.joint.rotor_inertia = rotor_inertia->number();
   }
-  if (conventions.gains) {
+  if (conventions.tree) readPlaceInTree(map, entry);
+  if (conventions.gains && entry.mimics.empty()) {
     entry.drive_gain.push_back(map.required("drive_gain").number());
   } else if (const auto gain = map.optional("drive_gain")) {
     gain->fail("no such key without levels",
@@ -313,14 +340,27 @@ Transform<double> readPose(LocatedMap& map) {
   return {rotationFromRollPitchYaw(readVector(map.required("rpy"))), xyz};
 }
 
+std::vector<JointEntry> coordinatesOf(const std::vector<JointEntry>& entries) {
+  std::vector<JointEntry> coordinates;
+  for (const JointEntry& entry : entries) {
+    if (entry.mimics.empty()) coordinates.push_back(entry);
+  }
+  return coordinates;
+}
+
 std::vector<JointEntry> readJoints(const LocatedValue& value, const Conventions& conventions) {
   const std::vector<LocatedValue> list = value.entries();
-  if (list.empty()) value.fail("at least one joint");
-  std::vector<JointEntry> entries;
-  entries.reserve(list.size());
-  for (const LocatedValue& joint : list) {
-    entries.push_back(readJoint(joint, conventions, list.size()));
-  }
+  const auto mimics = [&](const LocatedValue& joint) {
+    return conventions.tree && joint.map().optional("mimic").has_value();
+  };
+  const auto count =
+      list.size() - static_cast<std::size_t>(std::count_if(list.begin(), list.end(), mimics));
+  if (count == 0)
+    value.fail("at least one joint" + std::string(conventions.tree ? " that mimics no other" : ""));
+  std::vector<JointEntry> all;
+  all.reserve(list.size());
+  for (const LocatedValue& joint : list) all.push_back(readJoint(joint, conventions, count));
+  const std::vector<JointEntry> entries = coordinatesOf(all);
   allOrNone(entries, &JointEntry::row, "row", "give every joint a row, or every joint a link");
   allOrNone(entries, &JointEntry::friction, "friction",
             "where a joint has no friction, write {law: none}");
@@ -331,7 +371,7 @@ std::vector<JointEntry> readJoints(const LocatedValue& value, const Conventions&
     throw ModelError(entries[0].where, "gravity_first_moment", "no such key beside row", "one",
                      "gravity has the masses of link");
   }
-  return entries;
+  return all;
 }
 
 }  // namespace v2

@@ -26,9 +26,16 @@ struct Conventions {
   int schema = 1;
   Geometry geometry;
   Parameters parameters;
+  bool tree = false;   // whether `tips` are there, and joints may have parents and mimic
   bool gains = false;  // whether `levels` is there, and so every joint has a drive gain
   Level parameters_level = Level::kTorque;
   Level friction_level = Level::kTorque;
+};
+
+/// A joint that another one follows.
+struct MimicEntry {
+  std::string joint;
+  double multiplier = 1;
 };
 
 /// One joint of a file, with the link it moves. The file's link frame is U, the chain's is E.
@@ -44,10 +51,17 @@ struct JointEntry {
   std::vector<double> drive_gain;                          // one, or none
   std::vector<double> torque_deviation;                    // one, or none
   std::vector<SeenRange> seen;                             // one, or none
+  std::string parent;              // of a tree: the joint that moves the link it is on; empty: none
+  std::vector<MimicEntry> mimics;  // none: it is a coordinate
+  double offset = 0;               // where it stands if these stand at zero; rad; m
 };
 
-/// The joints from root to tip; what one has of row, friction and so on, all have.
+/// The joints; of a chain from root to tip. What one has of row, friction and so on, all have that mimic no
+/// other.
 std::vector<JointEntry> readJoints(const LocatedValue& value, const Conventions& conventions);
+
+/// Those that mimic no other.
+std::vector<JointEntry> coordinatesOf(const std::vector<JointEntry>& entries);
 
 Eigen::Vector3d readVector(const LocatedValue& value);
 

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include "chain_dynamics/error.hpp"
 #include "chain_dynamics/joint_frame.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/model_file.hpp"
 
 namespace chain_dynamics {
@@ -119,22 +124,27 @@ std::string linkLines(const Model& model, std::size_t j) {
   return text;
 }
 
-std::string jointLines(const Model& model, std::size_t j) {
-  const Joint& joint = model.chain.joints()[j];
+std::string startLines(const Joint& joint) {
+  return "  - name: " + quoted(joint.name) + "\n    type: " + typeText(joint.type) +
+         "\n    placement: {" + pose(joint.placement) + ", axis: [0, 0, 1]}\n";
+}
+
+std::string rotorLine(double rotor_inertia) {
+  return rotor_inertia == 0 ? "" : "    rotor_inertia: " + number(rotor_inertia) + "\n";
+}
+
+/// Of joint j, or of coordinate j of a mechanism: what stands behind its rotor and link.
+std::string identifiedLines(const Model& model, std::size_t j, const std::string& links) {
   const auto entry = [j](const char* key, const OwnedVector& values) {
     if (values.size() == 0) return std::string();
     return std::string("    ") + key + ": " + number(values[static_cast<Eigen::Index>(j)]) + "\n";
   };
-  std::string text = "  - name: " + quoted(joint.name) + "\n    type: " + typeText(joint.type) +
-                     "\n    placement: {" + pose(joint.placement) + ", axis: [0, 0, 1]}\n" +
-                     limitsLine(joint.limits);
-  if (joint.rotor_inertia != 0) text += "    rotor_inertia: " + number(joint.rotor_inertia) + "\n";
-  text += entry("drive_gain", model.drive_gains);
+  std::string text = entry("drive_gain", model.drive_gains);
   if (!model.friction.empty()) text += frictionLine(model.friction[j]);
   if (model.coupling.size() > 0 && !model.friction.empty()) {
     text += "    coupling: " + list(model.coupling.row(static_cast<Eigen::Index>(j))) + "\n";
   }
-  text += linkLines(model, j);
+  text += links;
   if (!model.gravity_parameters.empty()) {
     text += "    gravity_first_moment: " + list(model.gravity_parameters[j].first_moment) + "\n";
   }
@@ -143,6 +153,100 @@ std::string jointLines(const Model& model, std::size_t j) {
   const SeenRange& seen = model.seen[j];
   return text + "    seen: {q: " + list(seen.q) + ", qd: " + list(seen.qd) +
          ", qdd: " + list(seen.qdd) + "}\n\n";
+}
+
+std::string jointLines(const Model& model, std::size_t j) {
+  const Joint& joint = model.chain.joints()[j];
+  return startLines(joint) + limitsLine(joint.limits) + rotorLine(joint.rotor_inertia) +
+         identifiedLines(model, j, linkLines(model, j));
+}
+
+// ---------------------------------------------------------------------------------------------
+// Trees
+
+/// `    mimic: ...` of a joint of a branch; empty: it is the coordinate.
+std::string mimicLine(const Model& model, const Branch& branch, std::size_t i) {
+  std::string text;
+  const auto add = [&](Eigen::Index coordinate, double factor) {
+    const bool first = text.empty();
+    const std::string& name = model.chain.joints()[static_cast<std::size_t>(coordinate)].name;
+    text += (first ? "{joint: " : ", {joint: ") + quoted(name) + ", multiplier: " + number(factor) +
+            (first && branch.s[i] != 0 ? ", offset: " + number(branch.s[i]) : "") + "}";
+  };
+  for (const Follow& entry : branch.S) {
+    if (entry.joint == static_cast<Eigen::Index>(i)) add(entry.coordinate, entry.factor);
+  }
+  if (text.empty()) add(0, 0);  // it stands still
+  return "    mimic: [" + text + "]\n";
+}
+
+/// The joint of a branch is the coordinate that this gives; none: it follows some.
+std::optional<std::size_t> coordinateOf(const Model& model, const Branch& branch, std::size_t i) {
+  const std::vector<std::string> names = model.chain.jointNames();
+  const auto place = std::find(names.begin(), names.end(), branch.chain.joints()[i].name);
+  if (place == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(place - names.begin());
+}
+
+/// Where each link is first moved: branch and joint.
+std::vector<std::pair<const Branch*, std::size_t>> movesOf(const std::vector<Branch>& branches) {
+  std::vector<std::pair<const Branch*, std::size_t>> moves(
+      static_cast<std::size_t>(linkCount(branches)), {nullptr, 0});
+  for (const Branch& branch : branches) {
+    for (std::size_t i = 0; i < branch.link.size(); ++i) {
+      auto& move = moves[static_cast<std::size_t>(branch.link[i])];
+      if (move.first == nullptr) move = {&branch, i};
+    }
+  }
+  return moves;
+}
+
+std::string treeLines(const Model& model) {
+  std::string text = "tips:\n";
+  for (const Branch& branch : model.branches) {
+    text += "  - {name: " + quoted(branch.tip) +
+            ", joint: " + quoted(branch.chain.joints().back().name) + ", " +
+            pose(branch.chain.tip()) + "}\n";
+  }
+  text += "\njoints:\n";
+  const std::vector<LinkParameters> links = linksOf({model.chain, model.branches});
+  for (const auto& [branch, i] : movesOf(model.branches)) {
+    const std::vector<Joint>& joints = branch->chain.joints();
+    const std::string link =
+        "    link: " + list(links[static_cast<std::size_t>(branch->link[i])]) + "\n";
+    text += startLines(joints[i]);
+    if (i > 0) text += "    parent: " + quoted(joints[i - 1].name) + "\n";
+    const auto coordinate = coordinateOf(model, *branch, i);
+    if (coordinate) text += limitsLine(model.chain.joints()[*coordinate].limits);
+    if (!coordinate) text += mimicLine(model, *branch, i);
+    text += rotorLine(joints[i].rotor_inertia);
+    text += coordinate ? identifiedLines(model, *coordinate, link) : link + "\n";
+  }
+  return text;
+}
+
+/// Refuses coordinates that aren't joints, in the order of the links that they move.
+void checkWritableTree(const Model& model) {
+  std::size_t next = 0;
+  for (const auto& [branch, i] : movesOf(model.branches)) {
+    const auto coordinate = coordinateOf(model, *branch, i);
+    if (!coordinate) continue;
+    std::vector<Follow> S;
+    for (const Follow& entry : branch->S) {
+      if (entry.joint == static_cast<Eigen::Index>(i)) S.push_back(entry);
+    }
+    const bool is_joint = S.size() == 1 && S[0].factor == 1 && branch->s[i] == 0 &&
+                          S[0].coordinate == static_cast<Eigen::Index>(*coordinate);
+    if (is_joint && *coordinate == next) {
+      ++next;
+      continue;
+    }
+    break;
+  }
+  if (next == model.chain.joints().size()) return;
+  throw ModelError("model " + model.name, "coordinate " + model.chain.joints()[next].name,
+                   "a joint, in the order of the links that these move", "another",
+                   "a model file states no other");
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -181,6 +285,7 @@ std::string checkLines(const Model& model) {
 /// Refuses what a file can't state.
 void checkWritable(const Model& model) {
   checkModel(model);
+  if (!model.branches.empty()) checkWritableTree(model);
   for (std::size_t i = 0; i < model.gravity_parameters.size(); ++i) {
     if (model.row_parameters.empty() &&
         model.gravity_parameters[i].mass == model.chain.links()[i].mass) {
@@ -205,7 +310,9 @@ std::string modelFileText(const Model& model) {
       "\nvalidity: " + quoted(model.validity) + "\nunits: SI\n" +
       (model.drive_gains.size() > 0 ? "levels: {parameters: torque, friction: torque}\n" : "") +
       "\ngeometry: placements\ngravity: " + list(model.chain.gravity()) +
-      "\nparameters: about_origin\ntip: {" + pose(model.chain.tip()) + "}\n\njoints:\n";
+      "\nparameters: about_origin\n";
+  if (!model.branches.empty()) return text + treeLines(model) + checkLines(model);
+  text += "tip: {" + pose(model.chain.tip()) + "}\n\njoints:\n";
   for (std::size_t j = 0; j < model.chain.joints().size(); ++j) text += jointLines(model, j);
   return text + checkLines(model);
 }

@@ -34,6 +34,50 @@ TEST(ModelFileError, NamesWithControlCharacters) {
       HasSubstr("name: expected UTF-8 text without control characters, got 'a\\rm'"));
 }
 
+/// A waist with two arms, of which the second one follows the first.
+std::string treeFile() {
+  const auto one = [](const std::string& name, const std::string& more) {
+    return "  - name: " + name +
+           "\n    type: revolute\n    placement: {xyz: [0, 0, 1], rpy: [0, 0, 0], axis: [0, 1, "
+           "0]}\n"
+           "    link: [1, 0, 0, 0, 0.1, 0, 0, 0.1, 0, 0.1]\n" +
+           more;
+  };
+  return "schema: 2\nname: torso\nsource: x\nvalidity: x\nunits: SI\ngeometry: placements\n"
+         "gravity: [0, 0, -9.81]\nparameters: about_center_of_mass\ntips:\n"
+         "  - {name: left_tool, joint: left, xyz: [0, 0, 1], rpy: [0, 0, 0]}\n"
+         "  - {name: right_tool, joint: right, xyz: [0, 0, 1], rpy: [0, 0, 0]}\njoints:\n" +
+         one("waist", "") + one("left", "    parent: waist\n") +
+         one("right", "    parent: waist\n    mimic: {joint: left, multiplier: -1}\n");
+}
+
+TEST(ModelFileError, TreesThatAreNone) {
+  EXPECT_EQ(fileError(treeFile()), "no error");
+  const auto error = [](const std::string& from, const std::string& to) {
+    return fileError(replaced(treeFile(), from, to));
+  };
+  EXPECT_THAT(error("parent: waist", "parent: wiast"),
+              AllOf(HasSubstr("joint left: parent: expected a joint of the file, got 'wiast'"),
+                    HasSubstr("did you mean 'waist'?")));
+  EXPECT_THAT(error("parent: waist", "parent: left"),
+              HasSubstr("joint left: parent: expected a joint that isn't below this one"));
+  EXPECT_THAT(error("{joint: left, m", "{joint: elbow, m"),
+              HasSubstr("joint right: mimic.joint: expected a joint of the file, got 'elbow'"));
+  EXPECT_THAT(error("{joint: left, m", "{joint: right, m"),
+              HasSubstr("joint right: mimic: expected a joint that doesn't follow this one"));
+  EXPECT_THAT(error("joint: right, xyz", "joint: rihgt, xyz"),
+              AllOf(HasSubstr("arm.yaml:11"), HasSubstr("did you mean 'right'?")));
+  EXPECT_THAT(error("joint: right, xyz", "joint: left, xyz"),
+              HasSubstr("joint right: tips: expected one beyond this joint, got none"));
+  EXPECT_THAT(error("- name: right\n", "- name: left\n"), HasSubstr("expected one that no other"));
+  EXPECT_THAT(error("multiplier: -1}", "multiplier: -1}\n    limits: {lower: 1}"),
+              HasSubstr("limits: expected no such key of a joint that mimics another one"));
+  EXPECT_THAT(error("schema: 2", "schema: 1"), HasSubstr("tips: expected no such key in schema 1"));
+  EXPECT_THAT(error("tips:\n", "tip: {xyz: [0, 0, 1], rpy: [0, 0, 0]}\ntips:\n"),
+              HasSubstr("tip: unknown key"));
+  EXPECT_THAT(fileError(documentedFile() + "    parent: cart\n"), HasSubstr("arm.yaml"));
+}
+
 // YAML cut off between two lines is YAML still: what is missing must be noticed, or was optional.
 TEST(ModelFileError, TruncatedFileIsNeverReadAsAnotherRobot) {
   const std::string whole = documentedFile();

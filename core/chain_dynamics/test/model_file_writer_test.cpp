@@ -11,9 +11,12 @@
 
 #include "chain_dynamics/friction.hpp"
 #include "chain_dynamics/joint_frame.hpp"
+#include "chain_dynamics/mechanism.hpp"
+#include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/urdf.hpp"
 #include "example_models.hpp"
 #include "model_file_texts.hpp"
+#include "urdf_texts.hpp"
 
 namespace chain_dynamics::model_file_writer_test {
 
@@ -77,6 +80,59 @@ TEST(ModelFileWriter, WhatIdentificationFindsComesBackDigitByDigit) {
   robot.torque_deviation = Eigen::VectorXd::LinSpaced(7, 0.1, 1.0 / 3);
   robot.seen.assign(7, {{-1.0 / 3, 2}, {-1e-7, 1.5}, {-9, 12.125}});
   expectSame(robot, model(modelFileText(robot)));
+}
+
+/// A waist with two arms, of which the left one follows the other and has a wrist.
+Model tree() {
+  const std::string place = "<origin xyz='0.1 0.2 0.3' rpy='1 0.5 -0.3'/><axis xyz='0.6 0 0.8'/>";
+  const std::string follows = "<mimic joint='right_arm' multiplier='-0.7' offset='0.4'/>";
+  return Model(mechanismFromRobot(
+      robotFromUrdf(robot(link("base") + link("chest") + link("left") + link("right") +
+                          link("hand") +
+                          joint("right_arm", "revolute", "chest", "right", place + kLimit) +
+                          joint("left_arm", "revolute", "chest", "left", place + follows + kLimit) +
+                          joint("waist", "revolute", "base", "chest", place + kLimit) +
+                          joint("wrist", "prismatic", "left", "hand", place + kLimit))),
+      {}, {"*"}));
+}
+
+TEST(ModelFileWriter, TreesComeBack) {
+  const Model described = tree();
+  const Mechanism parts{described.chain, described.branches};
+  Model written(withLinks(parts, linksOf(parts), Eigen::Vector3d(0.1, 0.2, 0.3)));
+  for (const double fc : {1.0, 2.0, 3.0})
+    written.friction.emplace_back(SmoothCoulomb{0.5, fc, 0.1});
+  written.torque_deviation = Eigen::Vector3d(1, 2, 3);
+  written.seen.assign(3, {{-1, 2}, {-1, 1.5}, {-9, 12}});
+  const Model read = model(modelFileText(written));
+  EXPECT_EQ(read.chain.jointNames(), written.chain.jointNames());
+  EXPECT_EQ(read.chain.joints()[0].rotor_inertia, 0.1);
+  ASSERT_EQ(read.branches.size(), 2);
+  EXPECT_EQ(read.branches[1].tip, written.branches[1].tip);
+  EXPECT_EQ(read.branches[1].link, written.branches[1].link);
+  EXPECT_EQ(read.branches[1].chain.links()[0].mass, 0);
+  EXPECT_EQ(linksOf({read.chain, read.branches})[1].toVector(), linksOf(parts)[1].toVector());
+  EXPECT_EQ(read.seen[2].qdd.upper, 12);
+  const Eigen::Vector3d q(0.3, -0.2, 0.5), qd(1, -2, 0.4), qdd(3, 0.1, -1);
+  Eigen::Vector3d of_written, of_read;
+  torques(written, q, qd, qdd, of_written);
+  torques(read, q, qd, qdd, of_read);
+  EXPECT_LT((of_read - of_written).norm(), kRounding * (1 + of_written.norm()));
+  // joints that follow several coordinates
+  written.branches[1].S.push_back({1, 2, 0.25});
+  const Model mixed = model(modelFileText(written));
+  torques(written, q, qd, qdd, of_written);
+  torques(mixed, q, qd, qdd, of_read);
+  EXPECT_LT((of_read - of_written).norm(), kRounding * (1 + of_written.norm()));
+}
+
+TEST(ModelFileWriter, RefusesCoordinatesThatAreNoJoints) {
+  Model robot = tree();
+  for (Branch& branch : robot.branches) {
+    for (Follow& entry : branch.S) entry.factor *= 2;
+  }
+  EXPECT_THAT(errorOf([&] { modelFileText(robot); }),
+              HasSubstr("coordinate right_arm: expected a joint, in the order"));
 }
 
 TEST(ModelFileWriter, RefusesWhatNoFileStates) {
