@@ -2,8 +2,8 @@
 #include "inverse_dynamics_identification/arm_fit.hpp"
 
 #include <algorithm>
-#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/error.hpp>
+#include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/regressor_gram.hpp>
 #include <chain_dynamics/states.hpp>
@@ -21,8 +21,8 @@ namespace inverse_dynamics_identification {
 inline namespace v2 {
 namespace {
 
-using chain_dynamics::Chain;
 using chain_dynamics::ConstStates;
+using chain_dynamics::Mechanism;
 using chain_dynamics::Model;
 using chain_dynamics::ModelError;
 using chain_dynamics::RegressorGram;
@@ -136,7 +136,8 @@ Fit linearPart(const ArmFit& arm, FrictionTerms terms) {
   fit.parameters = arm.parameters;
   fit.noise = fit.weighed_by = arm.noise;
   const Index columns = ownColumns(terms);
-  fit.own = MatrixXd::Zero(columns + (arm.drive_gains.size() > 0 ? 1 : 0), arm.parameters.cols());
+  fit.own =
+      MatrixXd::Zero(columns + (arm.drive_gains.size() > 0 ? 1 : 0), arm.rotor_inertia.size());
   fit.own.row(own_column::kAcceleration) = arm.rotor_inertia.transpose();
   for (Index j = 0; j < fit.own.cols(); ++j) {
     for (const auto& [c, coefficient] : kLinear) {
@@ -236,10 +237,12 @@ class Rounds {
 
   ArmFit beginning() const {
     ArmFit fit;
-    fit.parameters.resize(10, joints());
+    fit.parameters.resize(10, static_cast<Index>(links_.size()));
     fit.rotor_inertia.setZero(joints());
+    for (Index i = 0; i < fit.parameters.cols(); ++i) {
+      fit.parameters.col(i) = links_[at(i)].link.toVector();
+    }
     for (Index j = 0; j < joints(); ++j) {
-      fit.parameters.col(j) = links_[at(j)].link.toVector();
       StepFriction& law = fit.friction.emplace_back();
       law.width = options_.friction.width * greatest_[at(j)];
       law.vs = options_.friction.stribeck_velocity * greatest_[at(j)];
@@ -329,34 +332,31 @@ class Rounds {
   Fit last_;  // of the last pass that was no worse, or what to start from
 };
 
-/// Links without motor or friction: the regressor's, and its gravity.
-Chain withoutMotors(const Chain& chain, std::vector<LinkParameters> links) {
-  std::vector<chain_dynamics::Joint> joints = chain.joints();
-  for (chain_dynamics::Joint& joint : joints) joint.rotor_inertia = 0;
-  return Chain(chain.name(), std::move(joints), std::move(links), chain.gravity(), chain.tip());
-}
-
-std::vector<LinkPrior> priorsOf(const Chain& description, const LinkFloor& floor) {
+std::vector<LinkPrior> priorsOf(const Mechanism& description, const LinkFloor& floor) {
   std::vector<LinkPrior> priors;
-  for (const LinkParameters& link : description.links()) priors.push_back(linkPrior(link, floor));
+  for (const LinkParameters& link : chain_dynamics::linksOf(description))
+    priors.push_back(linkPrior(link, floor));
   return priors;
 }
 
-std::vector<LinkParameters> linksOf(const std::vector<LinkPrior>& priors) {
+/// Links without motor or friction: the regressor's, and its gravity.
+Model withoutMotors(const Mechanism& description, const std::vector<LinkPrior>& priors) {
   std::vector<LinkParameters> links;
   links.reserve(priors.size());
   for (const LinkPrior& prior : priors) links.push_back(prior.link);
-  return links;
+  return Model(withLinks(description, links, VectorXd::Zero(description.coordinates.jointCount())));
 }
 
 }  // namespace
 
-ArmFitter::ArmFitter(const Chain& description, const LinkFloor& floor, const OwnedMatrix& coupling)
-    : chain_(description),
+ArmFitter::ArmFitter(const Mechanism& description, const LinkFloor& floor,
+                     const OwnedMatrix& coupling)
+    : robot_(description),
       coupling_(coupling),
       prior_(priorsOf(description, floor)),
-      fast_(Model(withoutMotors(description, linksOf(prior_)))) {
-  const Index n = chain_.jointCount();
+      fast_(withoutMotors(description, prior_)) {
+  const Index n = joints();
+  withLinks(description, chain_dynamics::linksOf(description), VectorXd::Ones(n));  // throws
   if (coupling.size() == 0 ||
       (coupling.rows() == n && coupling.cols() == n && coupling.allFinite() &&
        coupling.isLowerTriangular(0) && coupling.diagonal().isOnes(0))) {
@@ -373,24 +373,27 @@ bool ArmFitter::isCoupled(Index j) const {
 }
 
 void ArmFitter::check(const ArmFit& fit) const {
-  const Index joints = chain_.jointCount();
-  const bool fits = fit.parameters.rows() == 10 && fit.parameters.cols() == joints &&
-                    fit.rotor_inertia.size() == joints && areGains(joints, fit.drive_gains) &&
-                    static_cast<Index>(fit.friction.size()) == joints;
+  const Index n = joints();
+  const bool fits = fit.parameters.rows() == 10 && fit.parameters.cols() == links() &&
+                    fit.rotor_inertia.size() == n && areGains(n, fit.drive_gains) &&
+                    static_cast<Index>(fit.friction.size()) == n;
   if (!fits) {
-    throw ModelError("ArmFitter: fit", "parameters, rotor_inertia, friction",
-                     "those of " + std::to_string(joints) + " joints",
-                     "of " + std::to_string(fit.parameters.cols()), "fit the same arm");
+    throw ModelError(
+        "ArmFitter: fit", "parameters, rotor_inertia, friction",
+        "those of " + std::to_string(links()) + " links, " + std::to_string(n) + " joints",
+        "of " + std::to_string(fit.parameters.cols()) + ", " +
+            std::to_string(fit.rotor_inertia.size()),
+        "fit the same arm");
   }
 }
 
 ArmFit ArmFitter::fit(const ArmData& data, const ArmFitOptions& options,
                       const ArmFit* start) const {
   if (start != nullptr) check(*start);
-  checkOptions(chain_.jointCount(), options);
+  checkOptions(joints(), options);
   std::vector<const ArmData::Block*> blocks;
-  RegressorGram links(chain_.jointCount());
-  VectorXd greatest = VectorXd::Zero(chain_.jointCount());
+  RegressorGram links = fast_.emptyGram();
+  VectorXd greatest = VectorXd::Zero(joints());
   for (std::size_t b = 0; b < data.blocks_.size(); ++b) {
     if (static_cast<int>(b) == options.without) continue;
     blocks.push_back(&data.blocks_[b]);
@@ -400,7 +403,7 @@ ArmFit ArmFitter::fit(const ArmData& data, const ArmFitOptions& options,
   if (links.samples() == 0) throw ModelError("ArmFitter: expected samples, got none");
   const auto gram_at = [&](const ArmFit& fit) { return gramOf(fit, options.terms, blocks, links); };
   ArmFit found = Rounds(prior_, greatest, options).run(start, gram_at);
-  for (Index j = 0; j < chain_.jointCount(); ++j) {
+  for (Index j = 0; j < joints(); ++j) {
     if (isCoupled(j)) found.friction[static_cast<std::size_t>(j)].fl = 0;
   }
   return found;
@@ -411,12 +414,12 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const ArmData& data,
   check(fit);
   ArmFitOptions of = options;
   of.drive_gains = fit.drive_gains;  // a step begins at the fit
-  if (fit.noise.size() != chain_.jointCount()) {
-    throw ModelError("ArmFitter: fit", "noise", std::to_string(chain_.jointCount()) + " numbers",
+  if (fit.noise.size() != joints()) {
+    throw ModelError("ArmFitter: fit", "noise", std::to_string(joints()) + " numbers",
                      std::to_string(fit.noise.size()), "take a fit to samples");
   }
   const Fit linear = linearPart(fit, options.terms);
-  RegressorGram all(chain_.jointCount(), linear.own.rows());
+  RegressorGram all = fast_.emptyGram(linear.own.rows());
   VectorXd x(all.unknowns());
   x << Eigen::Map<const VectorXd>(linear.parameters.data(), linear.parameters.size()),
       Eigen::Map<const VectorXd>(linear.own.data(), linear.own.size());
@@ -425,7 +428,7 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const ArmData& data,
   result.scores.resize(x.size(), static_cast<Index>(data.blocks_.size()));
   MatrixXd A(x.size(), x.size());
   VectorXd b(x.size());
-  VectorXd greatest = VectorXd::Zero(chain_.jointCount());
+  VectorXd greatest = VectorXd::Zero(joints());
   for (std::size_t k = 0; k < data.blocks_.size(); ++k) {
     const ArmData::Block& block = data.blocks_[k];
     addGreatest(block.samples.qd, coupling_, greatest);

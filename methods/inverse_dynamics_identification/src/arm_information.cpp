@@ -22,7 +22,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rows of one joint: 10 n columns of links and its own. Means of them are filtered and added up.
+/// Rows of one joint: ten columns of each link, and its own. Means of them are filtered and added up.
 struct WhitenedRows {
   WhitenedRows(double white, double correlated, double correlation_time, Index columns)
       : filter(white * white, correlated * correlated, correlation_time),
@@ -48,24 +48,23 @@ struct WhitenedRows {
 OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms terms,
                                            const ArmData& data, const ResidualNoise& noise) const {
   check(fit);
-  const Index n = chain_.jointCount(), own = ownColumns(terms), links = 10 * n;
+  const Index n = joints(), own = ownColumns(terms), rigid = 10 * links();
   if (noise.white.size() != n || noise.correlated.size() != n) {
     throw chain_dynamics::ModelError("ArmFitter.whitenedInformation", "noise",
                                      "numbers of each joint", "others", "take that of the samples");
   }
-  std::vector<WhitenedRows> joints;
-  joints.reserve(static_cast<std::size_t>(n));
+  std::vector<WhitenedRows> whitened;
+  whitened.reserve(static_cast<std::size_t>(n));
   for (Index j = 0; j < n; ++j) {
-    joints.emplace_back(noise.white[j], noise.correlated[j], noise.correlation_time, links + own);
+    whitened.emplace_back(noise.white[j], noise.correlated[j], noise.correlation_time, rigid + own);
   }
-  const chain_dynamics::FastModel alone(chain_dynamics::Model(withLinks(fit.parameters, nullptr)),
-                                        fast_);
-  MatrixXd Y(n, links);
+  const chain_dynamics::FastModel alone(robotOf(fit.parameters, nullptr), fast_);
+  MatrixXd Y(n, rigid);
   VectorXd gravity(n), q(n), qd(n), qdd(n), own_row(own);
   MeanSpan span(noise.correlation_time);
   double last = 0.0;  // s, of means
   const auto end_mean = [&] {
-    for (WhitenedRows& joint : joints) joint.addMean(span.time() - last, span.weight());
+    for (WhitenedRows& joint : whitened) joint.addMean(span.time() - last, span.weight());
     last = span.time();
     span.restart();
   };
@@ -76,7 +75,7 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
           "ArmFitter.whitenedInformation", "time", std::to_string(block.q.count) + " numbers",
           std::to_string(block.time.size()), "pair each sample with its time");
     }
-    for (WhitenedRows& joint : joints) joint.filter.restart();
+    for (WhitenedRows& joint : whitened) joint.filter.restart();
     for (Index k = 0; k < block.q.count; ++k) {
       if (span.endsBefore(block.time[k])) end_mean();
       span.add(block.time[k]);
@@ -88,8 +87,8 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
       fast_.regressor(q.data(), qd.data(), qdd.data(), Y.data(), n);
       alone.gravityVector(q.data(), gravity.data());
       for (Index j = 0; j < n; ++j) {
-        WhitenedRows& joint = joints[static_cast<std::size_t>(j)];
-        joint.row.head(links) += Y.row(j).transpose();
+        WhitenedRows& joint = whitened[static_cast<std::size_t>(j)];
+        joint.row.head(rigid) += Y.row(j).transpose();
         const double velocity = coupling_.size() > 0 ? coupling_.row(j).dot(qd) : qd[j];
         ownColumnsAt(fit.friction[static_cast<std::size_t>(j)], velocity, qdd[j],
                      isCoupled(j) ? 0.0 : std::abs(gravity[j]), own_row);
@@ -99,14 +98,14 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
     if (!span.isEmpty()) end_mean();
   }
   OwnedMatrix information;
-  information.resize(links + own * n, links + own * n);
+  information.resize(rigid + own * n, rigid + own * n);
   information.setZero();
   for (Index j = 0; j < n; ++j) {
-    const MatrixXd sum = joints[static_cast<std::size_t>(j)].sum.selfadjointView<Eigen::Lower>();
-    const Index at = links + own * j;
-    information.topLeftCorner(links, links) += sum.topLeftCorner(links, links);
-    information.block(0, at, links, own) = sum.topRightCorner(links, own);
-    information.block(at, 0, own, links) = sum.bottomLeftCorner(own, links);
+    const MatrixXd sum = whitened[static_cast<std::size_t>(j)].sum.selfadjointView<Eigen::Lower>();
+    const Index at = rigid + own * j;
+    information.topLeftCorner(rigid, rigid) += sum.topLeftCorner(rigid, rigid);
+    information.block(0, at, rigid, own) = sum.topRightCorner(rigid, own);
+    information.block(at, 0, own, rigid) = sum.bottomLeftCorner(own, rigid);
     information.block(at, at, own, own) = sum.bottomRightCorner(own, own);
   }
   return information;

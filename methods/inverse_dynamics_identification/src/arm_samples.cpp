@@ -4,9 +4,9 @@
 /// Sums of ArmFitter's samples, and torques.
 
 #include <algorithm>
-#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/error.hpp>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/regressor_gram.hpp>
 #include <chain_dynamics/states.hpp>
@@ -23,7 +23,6 @@ namespace inverse_dynamics_identification {
 inline namespace v2 {
 namespace {
 
-using chain_dynamics::Chain;
 using chain_dynamics::ConstStates;
 using chain_dynamics::FastModel;
 using chain_dynamics::GramSamples;
@@ -151,29 +150,34 @@ GramSamples batchOf(const ArmSamples& block, Index first) {
 
 }  // namespace
 
-Chain ArmFitter::withLinks(const OwnedMatrix& parameters, const OwnedVector* rotors,
-                           const LinkParameters& carried) const {
-  std::vector<chain_dynamics::Joint> joints = chain_.joints();
+Model ArmFitter::robotOf(const OwnedMatrix& parameters, const OwnedVector* rotors,
+                         const LinkParameters& carried) const {
   std::vector<LinkParameters> links;
   for (Index j = 0; j < parameters.cols(); ++j) {
-    joints[static_cast<std::size_t>(j)].rotor_inertia = rotors == nullptr ? 0 : (*rotors)[j];
     const Eigen::Matrix<double, 10, 1> p = parameters.col(j);
     links.push_back(LinkParameters::fromVector(p));
   }
-  links.back() += chain_.tip() * carried;
-  return Chain(chain_.name(), std::move(joints), std::move(links), chain_.gravity(), chain_.tip());
+  if (robot_.branches.empty()) {
+    links.back() += robot_.coordinates.tip() * carried;
+  } else {
+    const chain_dynamics::Branch& first = robot_.branches.front();
+    links[static_cast<std::size_t>(first.link.back())] += first.chain.tip() * carried;
+  }
+  VectorXd of_motors = VectorXd::Zero(joints());
+  if (rotors != nullptr) of_motors = *rotors;
+  return Model(withLinks(robot_, links, of_motors));
 }
 
 ArmData ArmFitter::data(std::vector<ArmSamples> blocks) const {
   Index samples = 0;
   for (const ArmSamples& block : blocks) {
-    checkSamples(chain_.jointCount(), block);
+    checkSamples(joints(), block);
     samples += block.q.count;
   }
   std::vector<ArmData::Block> found;
   for (ArmSamples& block : blocks) {
-    ArmData::Block& to = found.emplace_back(
-        ArmData::Block{std::move(block), RegressorGram(chain_.jointCount()), {}});
+    ArmData::Block& to =
+        found.emplace_back(ArmData::Block{std::move(block), fast_.emptyGram(), {}});
     for (Index first = 0; first < to.samples.q.count; first += kBatch) {
       GramSamples batch = batchOf(to.samples, first);
       if (samples <= kMostKept) batch.keep = &to.rows.emplace_back();
@@ -186,14 +190,14 @@ ArmData ArmFitter::data(std::vector<ArmSamples> blocks) const {
 RegressorGram ArmFitter::gramOf(const ArmFit& fit, FrictionTerms terms,
                                 const std::vector<const ArmData::Block*>& blocks,
                                 const RegressorGram& links) const {
-  RegressorGram gram(chain_.jointCount(), ownColumns(terms) + (fit.drive_gains.size() > 0 ? 1 : 0));
-  const FastModel alone(Model(withLinks(fit.parameters, nullptr)), fast_);
+  RegressorGram gram = fast_.emptyGram(ownColumns(terms) + (fit.drive_gains.size() > 0 ? 1 : 0));
+  const FastModel alone(robotOf(fit.parameters, nullptr), fast_);
   Batch batch(fit, terms, coupling_);
   for (const ArmData::Block* block : blocks) {
     const ArmSamples& samples = block->samples;
     std::optional<FastModel> loaded;
     if (isSomething(samples.carried)) {
-      loaded.emplace(Model(withLinks(fit.parameters, nullptr, samples.carried)), fast_);
+      loaded.emplace(robotOf(fit.parameters, nullptr, samples.carried), fast_);
     }
     auto rows = block->rows.begin();
     for (Index first = 0; first < samples.q.count; first += kBatch) {
@@ -208,7 +212,7 @@ RegressorGram ArmFitter::gramOf(const ArmFit& fit, FrictionTerms terms,
 
 Model ArmFitter::model(const ArmFit& fit) const {
   check(fit);
-  Model model(withLinks(fit.parameters, &fit.rotor_inertia));
+  Model model = robotOf(fit.parameters, &fit.rotor_inertia);
   model.friction.assign(fit.friction.begin(), fit.friction.end());
   model.coupling = coupling_;
   return model;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace inverse_dynamics_identification {
 inline namespace v2 {
@@ -29,27 +30,45 @@ const Regressor& regressorOf(const InverseDynamicsSolver* solver) {
   return *regressor;
 }
 
-/// Own columns of each joint; none where the factor isn't one of so many joints.
-Index ownColumnsOf(const ArmUncertainty& uncertainty, Index joints) {
+/// Own columns of each joint; none where the factor isn't one of so many joints and links.
+Index ownColumnsOf(const ArmUncertainty& uncertainty, Index joints, Index links) {
   for (const FrictionTerms terms :
        {FrictionTerms::kStep, FrictionTerms::kLoad, FrictionTerms::kStribeck}) {
-    if (uncertainty.factor.rows() == joints * (10 + ownColumns(terms))) return ownColumns(terms);
+    if (uncertainty.factor.rows() == 10 * links + joints * ownColumns(terms)) {
+      return ownColumns(terms);
+    }
   }
   return 0;
 }
 
-void checkFits(const ArmUncertainty& uncertainty, Index joints) {
+void checkFits(const ArmUncertainty& uncertainty, Index joints, Index links) {
   const auto laws = static_cast<Index>(uncertainty.friction.size());
-  if (laws == joints && ownColumnsOf(uncertainty, joints) > 0 && uncertainty.factor.allFinite()) {
+  if (laws == joints && ownColumnsOf(uncertainty, joints, links) > 0 &&
+      uncertainty.factor.allFinite()) {
     return;
   }
   throw InvalidParameterValueException(
       "arm uncertainty", "",
-      std::to_string(joints) +
-          " laws of friction and finite numbers in 16, 17 or 19 rows per joint",
+      std::to_string(joints) + " laws of friction and finite numbers in 10 rows per link (" +
+          std::to_string(links) + ") and 6, 7 or 9 per joint",
       std::to_string(laws) + " laws and " + std::to_string(uncertainty.factor.rows()) + " rows" +
           (uncertainty.factor.allFinite() ? "" : ", not all of them finite"),
       "take that of the solver's own model");
+}
+
+/// Numbers of links before the first that each joint moves, whose columns of the regressor are zero: in a
+/// state in which no other are.
+std::vector<Index> numbersBefore(const InverseDynamicsSolver& solver, const Regressor& regressor) {
+  const Index n = solver.jointCount();
+  const Eigen::MatrixXd Y = regressor.getRegressor(Eigen::VectorXd::LinSpaced(n, 0.3, 1.1),
+                                                   Eigen::VectorXd::LinSpaced(n, -1.2, 2.1),
+                                                   Eigen::VectorXd::LinSpaced(n, 3.1, 2.0));
+  std::vector<Index> before(static_cast<std::size_t>(n), 0);
+  for (Index j = 0; j < n; ++j) {
+    Index& first = before[static_cast<std::size_t>(j)];
+    while (first + 10 < Y.cols() && Y.row(j).segment(first, 10).isZero(0)) first += 10;
+  }
+  return before;
 }
 
 }  // namespace
@@ -60,11 +79,13 @@ ArmDeviations::ArmDeviations(std::shared_ptr<const InverseDynamicsSolver> solver
       regressor_(&regressorOf(solver_.get())),
       friction_(uncertainty.friction) {
   const Index n = solver_->jointCount();
-  checkFits(uncertainty, n);
+  const Index links = regressor_->linkCount();
+  checkFits(uncertainty, n, links);
   factor_ = uncertainty.factor.transpose();
-  Y_ = Eigen::MatrixXd::Zero(n, 10 * n);
+  Y_ = Eigen::MatrixXd::Zero(n, 10 * links);
+  before_ = numbersBefore(*solver_, *regressor_);
   gravity_.setZero(n);
-  own_.setZero(ownColumnsOf(uncertainty, n));
+  own_.setZero(ownColumnsOf(uncertainty, n, links));
 }
 
 void ArmDeviations::compute(const inverse_dynamics_solver::ConstVectorRef& q,
@@ -77,10 +98,9 @@ void ArmDeviations::compute(const inverse_dynamics_solver::ConstVectorRef& q,
   for (Index j = 0; j < n; ++j) {
     const StepFriction& law = friction_[static_cast<std::size_t>(j)];
     ownColumnsAt(law, qd[j], qdd[j], std::abs(gravity_[j]), own_);
-    // a joint moves its own link and those after it
-    const Index moved = 10 * (n - j);
-    D.col(j).noalias() = factor_.middleCols(10 * j, moved) * Y_.row(j).tail(moved).transpose();
-    D.col(j).noalias() += factor_.middleCols(10 * n + columns * j, columns) * own_;
+    const Index before = before_[static_cast<std::size_t>(j)], moved = Y_.cols() - before;
+    D.col(j).noalias() = factor_.middleCols(before, moved) * Y_.row(j).tail(moved).transpose();
+    D.col(j).noalias() += factor_.middleCols(Y_.cols() + columns * j, columns) * own_;
   }
 }
 

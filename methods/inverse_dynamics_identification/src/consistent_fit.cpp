@@ -40,6 +40,7 @@ class Data {
  public:
   Data(const RegressorGram& gram, const Prior& prior)
       : joints_(gram.joints()),
+        links_(kParameters * gram.links()),
         all_columns_(gram.ownColumns()),
         samples_(gram.samples()),
         columns_(prior.columns) {
@@ -47,6 +48,7 @@ class Data {
       for (Index c = 0; c < all_columns_; ++c) columns_.push_back(c);
     }
     for (Index j = 0; j < joints_; ++j) {
+      before_.push_back(kParameters * gram.firstLink(j));
       MatrixXd G(gram.rowSize(), gram.rowSize());
       gram.rowGram(j, G);
       if (!G.allFinite()) {
@@ -62,7 +64,9 @@ class Data {
   Index allColumns() const { return all_columns_; }
   const std::vector<Index>& columns() const { return columns_; }
   Index ownColumns() const { return static_cast<Index>(columns_.size()); }
-  Index links() const { return kParameters * joints_; }
+  Index links() const { return links_; }  // their numbers
+  /// Numbers of links that the joints don't move: those before it, of each.
+  const std::vector<Index>& before() const { return before_; }
   Index unknowns() const { return links() + ownColumns() * joints_; }
 
   /// Root mean square of the torques of each joint.
@@ -96,7 +100,7 @@ class Data {
     for (Index j = 0; j < joints_; ++j) {
       const double w = 1 / (noise[j] * noise[j]);
       const MatrixXd& G = grams_[at(j)];
-      const Index before = kParameters * j, moved = links() - before;  // links that it doesn't move
+      const Index before = before_[at(j)], moved = links() - before;
       A.block(before, before, moved, moved) += w * G.block(before, before, moved, moved);
       b.segment(before, moved) += w * G.col(last()).segment(before, moved);
       c += w * G(last(), last());
@@ -115,20 +119,22 @@ class Data {
   static std::size_t at(Index j) { return static_cast<std::size_t>(j); }
   Index last() const { return links() + all_columns_; }
 
-  Index joints_, all_columns_, samples_;
+  Index joints_, links_, all_columns_, samples_;
+  std::vector<Index> before_;
   std::vector<Index> columns_;  // of them all, those that there are unknowns for
   std::vector<MatrixXd> grams_;
 };
 
 /// Solves H x = b in place. First come the unknowns of the links; the own columns of a joint meet those of
-/// no other one, nor the links before it, and are eliminated. False: H isn't positive definite.
-bool solveInPlace(const MatrixXd& H, Index joints, VectorXd& x) {
-  const Index rigid = kParameters * joints, own = (H.rows() - rigid) / joints;
+/// no other one, nor the numbers of links before those that it moves, and are eliminated. False: H isn't positive definite.
+bool solveInPlace(const MatrixXd& H, Index rigid, const std::vector<Index>& before, VectorXd& x) {
+  const auto joints = static_cast<Index>(before.size());
+  const Index own = (H.rows() - rigid) / joints;
   MatrixXd rest = H.topLeftCorner(rigid, rigid);
   std::vector<Eigen::LLT<MatrixXd>> factors;
   std::vector<MatrixXd> couplings;
   for (Index j = 0; j < joints; ++j) {
-    const Index at = rigid + own * j, moved = rigid - kParameters * j;
+    const Index at = rigid + own * j, moved = rigid - before[static_cast<std::size_t>(j)];
     const Eigen::LLT<MatrixXd>& factor = factors.emplace_back(H.block(at, at, own, own));
     if (factor.info() != Eigen::Success) return false;
     MatrixXd& C = couplings.emplace_back(H.block(at, rigid - moved, own, moved));
@@ -147,7 +153,7 @@ bool solveInPlace(const MatrixXd& H, Index joints, VectorXd& x) {
   for (Index j = 0; j < joints; ++j) {
     auto own_part = x.segment(rigid + own * j, own);
     own_part.noalias() -= couplings[static_cast<std::size_t>(j)] *
-                          x.segment(kParameters * j, rigid - kParameters * j);
+                          x.head(rigid).tail(rigid - before[static_cast<std::size_t>(j)]);
     factors[static_cast<std::size_t>(j)].matrixU().solveInPlace(own_part);
   }
   return true;
@@ -157,7 +163,7 @@ bool solveInPlace(const MatrixXd& H, Index joints, VectorXd& x) {
 class Cost {
  public:
   Cost(const Data& data, const Penalties& penalties, const VectorXd& noise)
-      : penalties_(penalties), joints_(data.joints()) {
+      : penalties_(penalties), links_(data.links()), before_(data.before()) {
     data.quadratic(noise, A_, b_, c_);
   }
 
@@ -216,7 +222,8 @@ class Cost {
     }
     VectorXd step = -scale.cwiseProduct(gradient);
     VectorXd solved = step;
-    for (double more = 1e-14; !solveInPlace(hessian, joints_, solved) && more < 1; more *= 10) {
+    for (double more = 1e-14; !solveInPlace(hessian, links_, before_, solved) && more < 1;
+         more *= 10) {
       hessian.diagonal().array() += more;
       solved = step;
     }
@@ -224,17 +231,18 @@ class Cost {
   }
 
   const Penalties& penalties_;
-  Index joints_;
+  Index links_;
+  std::vector<Index> before_;
   MatrixXd A_;
   VectorXd b_;
   double c_ = 0;
 };
 
 VectorXd unknownsOf(const Fit& fit, const Data& data) {
-  requireSize("parameters of the fit", kParameters * data.joints(), fit.parameters.size());
+  requireSize("parameters of the fit", data.links(), fit.parameters.size());
   requireSize("own columns of the fit", data.allColumns() * data.joints(), fit.own.size());
   VectorXd x(data.unknowns());
-  Index at = kParameters * data.joints();
+  Index at = data.links();
   x.head(at) = Eigen::Map<const VectorXd>(fit.parameters.data(), at);
   for (Index j = 0; j < data.joints(); ++j) {
     for (const Index c : data.columns()) x[at++] = fit.own(c, j);
@@ -244,9 +252,9 @@ VectorXd unknownsOf(const Fit& fit, const Data& data) {
 
 Fit fitOf(const VectorXd& x, const Data& data) {
   Fit fit;
-  fit.parameters = Eigen::Map<const MatrixXd>(x.data(), kParameters, data.joints());
+  fit.parameters = Eigen::Map<const MatrixXd>(x.data(), kParameters, data.links() / kParameters);
   fit.own = MatrixXd::Zero(data.allColumns(), data.joints());
-  Index at = kParameters * data.joints();
+  Index at = data.links();
   for (Index j = 0; j < data.joints(); ++j) {
     for (const Index c : data.columns()) fit.own(c, j) = x[at++];
   }
@@ -263,7 +271,8 @@ void solve(const Cost& cost, double strength, double first_strength, VectorXd& x
 }
 
 void check(const Data& data, const Prior& prior, const FitOptions& options) {
-  requireSize("links of the prior", data.joints(), static_cast<Index>(prior.links.size()));
+  requireSize("links of the prior", data.links() / kParameters,
+              static_cast<Index>(prior.links.size()));
   requireSize("own columns of the prior", data.ownColumns() * data.joints(),
               static_cast<Index>(prior.own.size()));
   if (options.noise.size() > 0) requireSize("noise", data.joints(), options.noise.size());

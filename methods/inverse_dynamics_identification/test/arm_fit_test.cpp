@@ -7,12 +7,17 @@
 #include <chain_dynamics/error.hpp>
 #include <chain_dynamics/fast_model.hpp>
 #include <chain_dynamics/friction.hpp>
+#include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
+#include <chain_dynamics/robot_description.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <random>
+#include <sstream>
+#include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "arms.hpp"
@@ -86,6 +91,127 @@ TEST(ArmFitter, FindsAKnownRobotWithItsFriction) {
       EXPECT_NEAR(fit.friction[j].shift, laws[j].shift, 0.01);
       EXPECT_NEAR(fit.friction[j].width, laws[j].width, 0.25 * laws[j].width + 0.01);
     }
+  }
+}
+
+/// A waist with a left arm of one joint and a right one of two, and a joint on the left that follows: random
+/// places and rods, of `scale` times their masses.
+chain_dynamics::Mechanism tree(unsigned seed, double scale) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto numbers = [&] {
+    std::ostringstream text;
+    for (int i = 0; i < 3; ++i) text << any(random) << " ";
+    return text.str();
+  };
+  std::ostringstream urdf;
+  urdf << "<robot name='tree'><link name='base'/>";
+  const auto add = [&](const std::string& name, const std::string& parent,
+                       const std::string& more) {
+    const double mass = scale * (2 + any(random));
+    urdf << "<link name='" << name << "'><inertial><origin xyz='0.2 0.1 -0.1'/><mass value='"
+         << mass << "'/><inertia ixx='" << 0.03 * mass << "' iyy='" << 0.04 * mass << "' izz='"
+         << 0.02 * mass << "' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='" << name
+         << "_joint' type='continuous'><parent link='" << parent << "'/><child link='" << name
+         << "'/><origin xyz='" << numbers() << "' rpy='" << numbers() << "'/><axis xyz='"
+         << numbers() << "'/>" << more << "</joint>";
+  };
+  add("chest", "base", "");
+  add("left", "chest", "");
+  add("finger", "left", "<mimic joint='left_joint' multiplier='-1.5' offset='0.2'/>");
+  add("right", "chest", "");
+  add("hand", "right", "");
+  urdf << "</robot>";
+  return chain_dynamics::mechanismFromRobot(chain_dynamics::robotFromUrdf(urdf.str()), {}, {"*"});
+}
+
+/// The same with friction and rotors.
+Model treeInMotion(unsigned seed) {
+  const chain_dynamics::Mechanism rigid = tree(seed, 1);
+  Model model(withLinks(rigid, linksOf(rigid), Eigen::Vector4d(0.3, 0.2, 0.1, 0.05)));
+  for (StepFriction law : knownFriction(FrictionTerms::kLoad)) {
+    law.shift = 0;
+    model.friction.emplace_back(law);
+  }
+  model.friction.push_back(model.friction.back());
+  return model;
+}
+
+Motion motionOf(const Model& model, Eigen::Index count, unsigned seed) {
+  Motion motion = randomMotion(model.chain, count, seed);
+  FastModel(model).torquesBatch(motion.q, motion.qd, motion.qdd, motion.tau);
+  motion.tau += noise(motion.tau.rows(), count, kNoise, seed + 1);
+  return motion;
+}
+
+TEST(ArmFitter, FindsAKnownTreeWithItsFriction) {
+  for (const unsigned seed : {3U, 4U}) {
+    SCOPED_TRACE(seed);
+    const Model truth = treeInMotion(seed);
+    const ArmFitter fitter(tree(seed, 0.6));
+    ASSERT_EQ(fitter.prior().size(), 5);
+    ASSERT_EQ(fitter.description().jointCount(), 4);
+    ArmFitOptions options;
+    options.terms = FrictionTerms::kLoad;
+    options.prior_strength = 1;
+    const Motion motion = motionOf(truth, 4000, 1), other = motionOf(truth, 2000, 9);
+    const ArmFit fit = fitter.fit({samplesOf(motion)}, options);
+    EXPECT_LT(errorOf(fitter, fit, other), 1.1 * kNoise) << fit.passes;
+    for (std::size_t j = 0; j < 4; ++j) {
+      const auto& law = std::get<StepFriction>(truth.friction[j]);
+      EXPECT_NEAR(fit.friction[j].fv, law.fv, 0.1);
+      EXPECT_NEAR(fit.friction[j].fl, law.fl, 0.05);
+    }
+    // rotors and links stand in the branches, each link in the first one that has it
+    const Model found = fitter.model(fit);
+    const chain_dynamics::Mechanism parts{found.chain, found.branches};
+    EXPECT_EQ(found.branches[1].chain.links()[0].mass, 0);
+    EXPECT_LT((linksOf(parts)[2].toVector() - fit.parameters.col(2)).norm(), 1e-15);
+    EXPECT_NEAR(found.chain.joints()[0].rotor_inertia, fit.rotor_inertia[0], 0);
+  }
+}
+
+TEST(ArmFitter, TellsOfATreeWhatSamplesSay) {
+  const Model truth = treeInMotion(5);
+  const ArmFitter fitter(tree(5, 0.6));
+  Motion motion = motionOf(truth, 600, 1);
+  ArmSamples samples = samplesOf(motion);
+  samples.carried = rod(0.5, 0.2);
+  samples.time = Eigen::VectorXd::LinSpaced(600, 0, 60);
+  Eigen::MatrixXd bare(4, 600), loaded(4, 600);
+  FastModel(truth).torquesBatch(motion.q, motion.qd, motion.qdd, bare);
+  FastModel(withBodyAtTip(truth, samples.carried))
+      .torquesBatch(motion.q, motion.qd, motion.qdd, loaded);
+  motion.tau += loaded - bare;
+  ArmFitOptions options;
+  options.prior_strength = 1;
+  options.terms = FrictionTerms::kLoad;
+  const ArmFit fit = fitter.fit({samples}, options);
+  EXPECT_LT(errorOf(fitter, fit, motionOf(truth, 600, 9)), 1.2 * kNoise);
+  samples.carried = LinkParameters::zero();
+  const ArmData data = fitter.data({samples});
+  const Eigen::Index unknowns = 5 * 10 + 4 * 7;
+  const ArmInformation found = fitter.information(fit, data, options);
+  ASSERT_EQ(found.data.rows(), unknowns);
+  // errors that aren't correlated: the whitened rows are the rows, by their noise
+  ResidualNoise white;
+  white.white = fit.noise;
+  white.correlated = Eigen::VectorXd::Zero(4);
+  white.correlation_time = 1e-3;
+  const OwnedMatrix whitened = fitter.whitenedInformation(fit, options.terms, data, white);
+  EXPECT_LT((whitened - found.data).norm(), 1e-9 * found.data.norm());
+}
+
+TEST(ArmFitter, RefusesATreeWithAMotorThatNoJointFollowsAlone) {
+  chain_dynamics::Mechanism mixed = tree(3, 1);
+  for (chain_dynamics::Branch& branch : mixed.branches) {
+    branch.S.push_back({0, 1, 0.5});  // the waist follows the left arm's motor, too
+  }
+  try {
+    const ArmFitter fitter(mixed);
+    FAIL() << "it was taken";
+  } catch (const chain_dynamics::ModelError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("chest_joint"));
   }
 }
 

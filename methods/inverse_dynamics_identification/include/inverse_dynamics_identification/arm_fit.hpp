@@ -16,6 +16,9 @@
 /// load of friction is that of the fit before. What is the same for all fits, the products Y_j' Y_j, is
 /// summed once; up to 20 000 samples, their rows are kept, too. Memory doesn't grow with more.
 ///
+/// A mechanism [chain_dynamics/mechanism.hpp] is fitted likewise: links are all its links, joints its
+/// coordinates, and the tip is that of its first branch.
+///
 /// Where `tau` are motor currents i, the drive gains k are fitted too,
 ///
 ///     k_j i_j = Y_j p + rotor_inertia_j qdd_j + f_j + t_j,
@@ -30,6 +33,7 @@
 
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/regressor_gram.hpp>
 #include <chain_dynamics/states.hpp>
@@ -99,7 +103,7 @@ struct ArmFitOptions {
 
 /// A model of an arm.
 struct ArmFit {
-  OwnedMatrix parameters;              ///< 10 x n, in link frames
+  OwnedMatrix parameters;              ///< 10 x links, in link frames
   OwnedVector rotor_inertia;           ///< n; kg m^2 (prismatic kg)
   std::vector<StepFriction> friction;  ///< n
   OwnedVector noise;                   ///< n; root mean square of the errors; N m (prismatic N)
@@ -108,7 +112,7 @@ struct ArmFit {
   int passes = 0;
 };
 
-/// What samples and prior say of the unknowns at a fit: 10 n parameters, then ownColumns(terms) of each
+/// What samples and prior say of the unknowns at a fit: ten parameters of each link, then ownColumns(terms) of each
 /// joint, and one more of log(drive gain) where these were fitted; those of shift, log(width), log(vs)
 /// and log(drive gain) are steps from the fit.
 struct ArmInformation {
@@ -124,11 +128,17 @@ class ArmFitter {
   /// @param coupling     of motors, as chain_dynamics::Model::coupling, lower triangular with ones on its
   ///     diagonal: a joint's own friction is fitted to its torque less that of later motors. Motors that
   ///     other joints turn too have no load friction. Empty: each joint has its own motor.
-  /// @throws chain_dynamics::ModelError  more than 64 joints, another coupling.
-  explicit ArmFitter(const chain_dynamics::Chain& description, const LinkFloor& floor = {},
+  /// @throws chain_dynamics::ModelError  more than 64 joints, a mechanism that checkMechanism() refuses,
+  ///     or with a coordinate that no joint follows alone; another coupling.
+  explicit ArmFitter(const chain_dynamics::Mechanism& description, const LinkFloor& floor = {},
                      const OwnedMatrix& coupling = {});
+  explicit ArmFitter(const chain_dynamics::Chain& description, const LinkFloor& floor = {},
+                     const OwnedMatrix& coupling = {})
+      : ArmFitter(chain_dynamics::Mechanism{description, {}}, floor, coupling) {}
 
-  const chain_dynamics::Chain& description() const { return chain_; }
+  const chain_dynamics::Mechanism& robot() const { return robot_; }
+  /// The chain, or the coordinates of the mechanism.
+  const chain_dynamics::Chain& description() const { return robot_.coordinates; }
   const OwnedMatrix& coupling() const { return coupling_; }
   /// What was made of the links, and why.
   const std::vector<LinkPrior>& prior() const { return prior_; }
@@ -173,8 +183,10 @@ class ArmFitter {
   using Gram = chain_dynamics::RegressorGram;
 
   void check(const ArmFit& fit) const;
-  chain_dynamics::Chain withLinks(const OwnedMatrix& parameters, const OwnedVector* rotors,
-                                  const LinkParameters& carried = LinkParameters::zero()) const;
+  Eigen::Index joints() const { return robot_.coordinates.jointCount(); }
+  Eigen::Index links() const { return static_cast<Eigen::Index>(prior_.size()); }
+  chain_dynamics::Model robotOf(const OwnedMatrix& parameters, const OwnedVector* rotors,
+                                const LinkParameters& carried = LinkParameters::zero()) const;
   /// Sums of blocks with the own columns of a fit [friction_step.hpp], less the torque of what is
   /// carried. Where the fit has drive gains, there is one more column: minus the computed torque, which is
   /// the derivative by log k of the errors. links: the products Y_j' Y_j of the same blocks.
@@ -184,7 +196,7 @@ class ArmFitter {
   /// Whether other joints turn the motor of joint j.
   bool isCoupled(Eigen::Index j) const;
 
-  chain_dynamics::Chain chain_;
+  chain_dynamics::Mechanism robot_;
   OwnedMatrix coupling_;
   std::vector<LinkPrior> prior_;
   chain_dynamics::FastModel fast_;

@@ -30,7 +30,8 @@ struct ArmUncertainty {
   /// n: the model's.
   std::vector<StepFriction> friction;
   /// m x K: columns are independent deviations from the model, of one standard deviation each. Rows:
-  /// 10 n parameters in the frames of the solver's regressor, then the own columns of each joint.
+  /// ten parameters of each link in the frames of the solver's regressor, then the own columns of each
+  /// joint.
   chain_dynamics::OwnedMatrix factor;
 };
 
@@ -60,7 +61,8 @@ class ArmDeviations {
   const inverse_dynamics_solver::Regressor* regressor_;  // of the solver
   std::vector<StepFriction> friction_;
   chain_dynamics::OwnedMatrix factor_;  // K x m
-  chain_dynamics::OwnedMatrix Y_;       // n x 10 n
+  chain_dynamics::OwnedMatrix Y_;       // n x 10 links
+  std::vector<Eigen::Index> before_;    // columns of Y_ that are zero in each row
   chain_dynamics::OwnedVector gravity_, own_;
 };
 

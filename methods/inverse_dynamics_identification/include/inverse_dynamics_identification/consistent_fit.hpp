@@ -3,7 +3,7 @@
 /// @file
 /// Inertial parameters that are a robot's, from Gram matrices: a convex fit.
 ///
-///     RegressorGram gram(n, 2);                        // own columns: qdd (rotor inertia), qd
+///     RegressorGram gram = fast.emptyGram(2);          // own columns: qdd (rotor inertia), qd
 ///     fast.addToGram(samples, gram);                   // any number of times, blocks, recordings
 ///     const Prior prior{chain.links(), std::vector<OwnColumn>(2 * n, OwnColumn::positive())};
 ///     Fit fit = consistentFit(gram, prior, options);   // every link is a body
@@ -54,7 +54,7 @@ struct OwnColumn {
 
 /// Priors, from which the fit also starts.
 struct Prior {
-  std::vector<LinkParameters> links;  ///< n, positive definite each: linkPrior()
+  std::vector<LinkParameters> links;  ///< of all links, positive definite each: linkPrior()
   std::vector<OwnColumn> own;         ///< of joint 1, of joint 2, ...; as many for each
   /// Which of the gram's own columns these are, ascending; the coefficients of the others are zero.
   /// Empty: all of them.
@@ -70,7 +70,7 @@ struct FitOptions {
 
 /// A robot, and how well it fits.
 struct Fit {
-  OwnedMatrix parameters;  ///< 10 x n, in the order of LinkParameters::toVector()
+  OwnedMatrix parameters;  ///< 10 x links, in the order of LinkParameters::toVector()
   OwnedMatrix own;         ///< own columns x n
   OwnedVector noise;       ///< n; root mean square of the errors under this fit; N m (prismatic N)
   OwnedVector weighed_by;  ///< n; the noise that the fit was made with
