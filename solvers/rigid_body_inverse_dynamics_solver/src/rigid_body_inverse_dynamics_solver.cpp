@@ -90,7 +90,11 @@ Sentences unusedParameters(const Configuration& configuration) {
 Sentences attachedLinks(const Configuration& configuration, const chain_dynamics::Model& model) {
   const chain_dynamics::RobotDescription robot =
       chain_dynamics::robotFromUrdf(configuration.robot_description);
-  const std::vector<std::string> joints = model.chain.jointNames();
+  std::vector<std::string> joints = model.chain.jointNames();
+  if (!model.branches.empty()) joints.clear();
+  for (const chain_dynamics::Branch& branch : model.branches) {
+    for (const std::string& name : branch.chain.jointNames()) joints.push_back(name);
+  }
   std::set<std::size_t> links_of_model;
   for (const std::string& name : joints) {
     const std::size_t joint = robot.jointIndex(name);
@@ -104,12 +108,15 @@ Sentences attachedLinks(const Configuration& configuration, const chain_dynamics
   }
 
   std::string bodies;
-  for (const std::size_t i : robot.linksBelow(robot.joints[robot.jointIndex(joints[0])].child)) {
-    const auto& link = robot.links[i];
-    if (links_of_model.count(i) > 0 || !link.inertial || link.inertial->mass == 0.0) continue;
-    std::ostringstream mass;
-    mass << link.inertial->mass;
-    bodies += (bodies.empty() ? "" : ", ") + link.name + " (" + mass.str() + " kg)";
+  for (const std::string& name : joints) {
+    for (const std::size_t i : robot.linksBelow(robot.joints[robot.jointIndex(name)].child)) {
+      const auto& link = robot.links[i];
+      if (!links_of_model.insert(i).second || !link.inertial || link.inertial->mass == 0.0)
+        continue;
+      std::ostringstream mass;
+      mass << link.inertial->mass;
+      bodies += (bodies.empty() ? "" : ", ") + link.name + " (" + mass.str() + " kg)";
+    }
   }
   if (bodies.empty()) return {};
   return {"the robot description attaches bodies that model " + model.name +
@@ -150,8 +157,10 @@ Sentences differences(const Configuration& configuration, const chain_dynamics::
   try {
     if (configuration.lump_attached) sentences = attachedLinks(configuration, model);
     if (configuration.root.empty() && configuration.tip.empty()) return sentences;
-    const Chain described = chainFromDescription(configuration);
+    const chain_dynamics::Mechanism robot = mechanismFromDescription(configuration);
+    const Chain& described = robot.coordinates;
     if (described.jointNames() == model.chain.jointNames()) {
+      if (!robot.branches.empty() || !model.branches.empty()) return sentences;
       for (std::string& sentence : otherTip(described, model)) sentences.push_back(sentence);
     } else {
       sentences.push_back(
@@ -208,7 +217,7 @@ auto InverseDynamicsSolverRigidBody::use(chain_dynamics::Model model,
   for (std::string& sentence : differences(configuration, model)) {
     warnings.push_back(std::move(sentence));
   }
-  if (configuration.gravity_given) model.chain = model.chain.withGravity(configuration.gravity);
+  if (configuration.gravity_given) model = withGravity(model, configuration.gravity);
   if (!configuration.friction) model.friction.clear();
   return keep(std::move(model), configuration, std::move(warnings));
 }

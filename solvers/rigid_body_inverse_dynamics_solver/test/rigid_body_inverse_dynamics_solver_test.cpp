@@ -12,7 +12,9 @@
 
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/fast_model.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/model.hpp"
+#include "chain_dynamics/model_file.hpp"
 #include "chain_dynamics/urdf.hpp"
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
@@ -499,6 +501,24 @@ TEST(Trees, OfOneTipAreTheChainBitForBit) {
   Eigen::VectorXd tau(5);
   fast.torques(q.data(), q.data(), q.data(), tau.data());
   EXPECT_EQ(list.getTorques(q, q, q), tau);
+}
+
+TEST(Trees, ComeFromAModelFileUnderAnyGravity) {
+  const chain_dynamics::Model model(
+      chain_dynamics::mechanismFromUrdf(twoArms(), {"", "*", {}, true, false, {}, {}}));
+  const TemporaryFile file("two_arms.yaml", chain_dynamics::modelFileText(model));
+  const ParameterMap tilted = {{"tip", std::string("*")},
+                               {"gravity", std::vector<double>{1, 2, -9}}};
+  InverseDynamicsSolverRigidBody described, read;
+  initialized(described, tilted);
+  ParameterMap from_file = tilted;
+  from_file["model"] = file.path();
+  initialized(read, from_file);
+  EXPECT_EQ(read.jointNames(), described.jointNames());
+  EXPECT_EQ(read.tipNames(), described.tipNames());
+  EXPECT_TRUE(read.warnings().empty()) << read.warnings().front();
+  const Eigen::VectorXd q = ramp(9, -0.4, 0.3), tau = described.getTorques(q, q, q);
+  EXPECT_LE((read.getTorques(q, q, q) - tau).norm(), 1e-12 * tau.norm());
 }
 
 TEST(Trees, MoveAnArmAsTheChainThatHoldsTheOther) {
