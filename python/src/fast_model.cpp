@@ -5,9 +5,9 @@
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
 #include <chain_dynamics/friction_laws/smooth_coulomb.hpp>
+#include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/model_file.hpp>
-#include <chain_dynamics/regressor.hpp>
 #include <chain_dynamics/share_states.hpp>
 #include <chain_dynamics/urdf.hpp>
 #include <cstddef>
@@ -25,6 +25,7 @@
 #include "description.hpp"
 #include "friction.hpp"
 #include "quantities.hpp"
+#include "tips.hpp"
 
 INVERSE_DYNAMICS_TOOLS_OBJECT(IdentifiedModel,
                               "inverse_dynamics.identification.result.IdentifiedModel")
@@ -83,6 +84,8 @@ class FastModel {
   Frames frames_;
 };
 
+Index linkCount(const FastModel& model) { return model.fast().linkCount(); }
+
 using Numbers3 = std::array<double, 3>;
 
 /// Links from rows (n, 10).
@@ -97,7 +100,7 @@ std::vector<chain_dynamics::LinkParameters> linksOf(const Array& rows, py::ssize
 }
 
 std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& root,
-                                    const std::string& tip, const std::optional<Numbers3>& gravity,
+                                    const Tips& tip, const std::optional<Numbers3>& gravity,
                                     const std::map<std::string, double>& locked_joints,
                                     std::int64_t threads) {
   chain_dynamics::UrdfOptions options;
@@ -106,12 +109,13 @@ std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& 
     return found == locked_joints.end() ? std::nullopt : std::optional<double>(found->second);
   };
   options.root = root;
-  options.tip = tip;
+  options.tip = textOf(tip);
   if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
   auto made = std::make_unique<FastModel>(
-      chain_dynamics::Model(chain_dynamics::chainFromUrdf(urdf.text, options)), threads, urdf.text,
-      root, locked_joints);
-  made->origin = py::make_tuple("from_urdf", urdf.text, root, tip, gravity, locked_joints, threads);
+      chain_dynamics::Model(chain_dynamics::mechanismFromUrdf(urdf.text, options)), threads,
+      urdf.text, root, locked_joints);
+  made->origin =
+      py::make_tuple("from_urdf", urdf.text, root, options.tip, gravity, locked_joints, threads);
   return made;
 }
 
@@ -121,29 +125,31 @@ std::unique_ptr<FastModel> fromFile(const std::string& path, std::int64_t thread
   return made;
 }
 
-/// The chain with the parameters of an IdentifiedModel of identification/result.py.
+chain_dynamics::Mechanism mechanismOf(const FastModel& model) {
+  return {model.model().chain, model.model().branches};
+}
+
+/// The robot with the parameters of an IdentifiedModel of identification/result.py.
 std::unique_ptr<FastModel> identified(const FastModel& engine, const IdentifiedModel& found) {
-  const chain_dynamics::Chain& chain = engine.model().chain;
-  const auto n = static_cast<py::ssize_t>(chain.jointCount());
+  const auto n = static_cast<py::ssize_t>(engine.joints().size());
+  const auto links_count = static_cast<py::ssize_t>(engine.fast().linkCount());
   const auto numbers = [&](const char* name, const std::vector<py::ssize_t>& shape) {
     auto array = found.attr(name).cast<Array>();
     requireShape(name, array, shape);
     return array;
   };
-  const Array links = numbers("parameters", {n, kParameters}),
+  const Array links = numbers("parameters", {links_count, kParameters}),
               rotors = numbers("rotor_inertia", {n}), bands = numbers("torque_deviation", {n}),
               seen = numbers("seen", {3, n, 2});
-  std::vector<chain_dynamics::Joint> joints = chain.joints();
   std::vector<chain_dynamics::SeenRange> ranges;
   for (py::ssize_t j = 0; j < n; ++j) {
-    joints[static_cast<std::size_t>(j)].rotor_inertia = rotors.at(j);
     const auto interval = [&](py::ssize_t of) {
       return chain_dynamics::Interval{seen.at(of, j, 0), seen.at(of, j, 1)};
     };
     ranges.push_back({interval(0), interval(1), interval(2)});
   }
-  chain_dynamics::Model model(
-      chain_dynamics::Chain(chain.name(), joints, linksOf(links, n), chain.gravity(), chain.tip()));
+  chain_dynamics::Model model(withLinks(mechanismOf(engine), linksOf(links, links_count),
+                                        Eigen::Map<const Eigen::VectorXd>(rotors.data(), n)));
   for (const auto& law :
        found.attr("friction").cast<std::vector<chain_dynamics::SmoothCoulomb>>()) {
     model.friction.emplace_back(law);
@@ -233,8 +239,11 @@ Parameters
 ----------
 urdf : str or path
     Text of the description, or path of a .urdf or .xacro file.
-root, tip : str, optional
-    Links between which the chain is; by default the first and the last.
+root : str, optional
+    The link that is held; by default the description's.
+tip : str or list of str, optional
+    The last link, by default that of the description's chain. Several, also with commas between them, or "*"
+    for all leaves: a tree.
 gravity : sequence of 3 floats, optional
     m/s^2, in the axes of the root link.
 locked_joints : dict, optional
@@ -363,9 +372,19 @@ str)")
           "Names of the joints, from root to tip: the order of all arrays.")
       .def_property_readonly(
           "parameters",
-          [](const FastModel& m) { return arrayOf(chain_dynamics::parameters(m.model().chain)); },
-          "(10 n,) of the rigid bodies: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz of each\n"
-          "link, in its frame and about its origin.");
+          [](const FastModel& m) {
+            const auto links = chain_dynamics::linksOf(mechanismOf(m));
+            Eigen::VectorXd all(kParameters * static_cast<Index>(links.size()));
+            for (std::size_t i = 0; i < links.size(); ++i) {
+              all.segment<kParameters>(kParameters * static_cast<Index>(i)) = links[i].toVector();
+            }
+            return arrayOf(all);
+          },
+          "(10 l,) of the rigid bodies: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz of each\n"
+          "of l links, in its frame and about its origin.")
+      .def_property_readonly(
+          "link_joints", [](const FastModel& m) { return tupleOf(linkJoints(mechanismOf(m))); },
+          "Names of the joints that move these links; of a chain joint_names.");
 }
 
 }  // namespace inverse_dynamics_tools

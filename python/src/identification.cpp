@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chain_dynamics/error.hpp>
+#include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/owned.hpp>
 #include <chain_dynamics/urdf.hpp>
 #include <cstddef>
@@ -26,6 +27,7 @@
 #include "fields.hpp"
 #include "friction.hpp"
 #include "solver_payload.hpp"
+#include "tips.hpp"
 #include "vectors.hpp"
 
 namespace inverse_dynamics_tools {
@@ -86,7 +88,7 @@ using identification::LinkPrior;
 using Vector = Eigen::VectorXd;
 
 std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::string& root,
-                                          const std::string& tip,
+                                          const Tips& tip,
                                           const std::optional<std::array<double, 3>>& gravity,
                                           const std::map<std::string, double>& locked_joints,
                                           const std::optional<Array>& coupling) {
@@ -96,11 +98,11 @@ std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::st
     return found == locked_joints.end() ? std::nullopt : std::optional<double>(found->second);
   };
   options.root = root;
-  options.tip = tip;
+  options.tip = textOf(tip);
   if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
   Eigen::MatrixXd motors;
   if (coupling) motors = states(*coupling, "coupling").transpose();
-  return std::make_unique<ArmFitter>(chain_dynamics::chainFromUrdf(urdf, options),
+  return std::make_unique<ArmFitter>(chain_dynamics::mechanismFromUrdf(urdf, options),
                                      identification::LinkFloor{}, motors);
 }
 
@@ -164,7 +166,7 @@ Array whitenedInformation(const ArmFitter& fitter, const ArmFit& of, const HeldD
   return rowsOf(unlocked([&] { return fitter.whitenedInformation(of, law, held.data, noise); }));
 }
 
-/// (n, 10).
+/// (l, 10).
 Array rowsOfLinks(const std::vector<LinkPrior>& priors) {
   chain_dynamics::OwnedMatrix rows(10, static_cast<Eigen::Index>(priors.size()));
   Eigen::Index i = 0;
@@ -176,7 +178,7 @@ void bindFit(py::module_& module) {
   py::class_<ArmFit>(module, "ArmFit", "A model of an arm: arm_fit.hpp.")
       .def_property_readonly(
           "parameters", [](const ArmFit& f) { return rowsOf(f.parameters); },
-          "(n, 10) m, mc, I of each link, in its frame and about its origin.")
+          "(l, 10) m, mc, I of each link, in its frame and about its origin.")
       .def_property_readonly(
           "rotor_inertia", [](const ArmFit& f) { return arrayOf(f.rotor_inertia); },
           "(n,) kg m^2 (prismatic kg).")
@@ -217,8 +219,9 @@ void bindIdentification(py::module_& module) {
           "from_urdf", &fitterFromUrdf, "urdf"_a, py::kw_only(), "root"_a = "", "tip"_a = "",
           "gravity"_a = py::none(), "locked_joints"_a = std::map<std::string, double>(),
           "coupling"_a = py::none(),
-          "Of a URDF's text, whose links are the prior. locked_joints: positions of joints\n"
-          "beside the chain, else 0. coupling: (n, n), friction is of motors with velocities\n"
+          "Of a URDF's text, whose links are the prior. tip: of several, or of \"*\", a tree.\n"
+          "locked_joints: positions of joints beside chain or tree, else 0. coupling: (n, n), "
+          "friction is of motors with velocities\n"
           "`coupling qd`.")
       .def_property_readonly(
           "coupling",
@@ -231,8 +234,11 @@ void bindIdentification(py::module_& module) {
           "joint_names", [](const ArmFitter& f) { return tupleOf(f.description().jointNames()); },
           "Names of the joints, from root to tip: the order of all arrays.")
       .def_property_readonly(
+          "link_joints", [](const ArmFitter& f) { return tupleOf(linkJoints(f.robot())); },
+          "Names of the joints that move the l links; of a chain joint_names.")
+      .def_property_readonly(
           "prior", [](const ArmFitter& f) { return rowsOfLinks(f.prior()); },
-          "(n, 10) parameters of the links that fits are drawn to.")
+          "(l, 10) parameters of the links that fits are drawn to.")
       .def_property_readonly(
           "changes",
           [](const ArmFitter& f) {

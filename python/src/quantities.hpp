@@ -43,7 +43,8 @@ inline constexpr ShapeOf kRotation = [](pybind11::ssize_t /*n*/) { return Shape{
 inline constexpr ShapeOf kPerJoint = [](pybind11::ssize_t n) { return Shape{n}; };
 inline constexpr ShapeOf kJointByJoint = [](pybind11::ssize_t n) { return Shape{n, n}; };
 inline constexpr ShapeOf kJacobian = [](pybind11::ssize_t n) { return Shape{6, n}; };
-inline constexpr ShapeOf kTenPerJoint = [](pybind11::ssize_t n) { return Shape{n, 10 * n}; };
+/// Instead, ten columns for each link: how many, linkCount(class) says.
+inline constexpr ShapeOf kTenPerLink = nullptr;
 
 /// Parts of a result's docstring.
 struct ResultText {
@@ -81,7 +82,10 @@ class Quantities {
       std::size_t i = 0;
       (call.input(of.inputs[i++], values), ...);
       const auto n = static_cast<pybind11::ssize_t>(self.joints().size());
-      for (const ShapeOf shape : of.shapes) call.result("out", out, shape(n));
+      for (const ShapeOf shape : of.shapes) {
+        const bool per_link = shape == kTenPerLink;
+        call.result("out", out, per_link ? Shape{n, 10 * linkCount(self)} : shape(n));
+      }
       self.compute(call, [&](const PartOfCall& part) { compute(self, part); });
       return call;
     };
@@ -231,9 +235,10 @@ inline constexpr Quantity kTorqueDerivatives{
 inline constexpr Quantity kRegressor{
     "regressor",
     std::array{"q", "qd", "qdd"},
-    std::array{kTenPerJoint},
+    std::array{kTenPerLink},
     {"Y(q, qd, qdd): torques of rigid bodies are Y p, with ten parameters of each link.",
-     "(n, 10 n) or (N, n, 10 n)", "arm.regressor(q, qd, qdd).shape\n(100, 6, 60)"}};
+     "(n, 10 l) or (N, n, 10 l) of l links; of a chain n",
+     "arm.regressor(q, qd, qdd).shape\n(100, 6, 60)"}};
 inline constexpr Quantity kAccelerations{
     "accelerations",
     std::array{"q", "qd", "tau"},

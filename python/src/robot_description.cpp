@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -99,14 +100,20 @@ std::size_t jointOf(const RobotDescription& robot, const std::string& name) {
 std::vector<DescribedJoint> chainOf(const RobotDescription& robot,
                                     const std::vector<std::string>& joints,
                                     const std::string& root) {
-  std::vector<DescribedJoint> chain;
-  std::size_t link = linkOf(robot, root);
+  std::set<std::size_t> listed;
+  for (const std::string& name : joints) listed.insert(jointOf(robot, name));
+  std::vector<DescribedJoint> placed;
   for (const std::string& name : joints) {
     const std::size_t joint = jointOf(robot, name);
-    chain.push_back(placedIn(robot, link, joint));
-    link = robot.joints[joint].child;
+    std::size_t above = robot.links[robot.joints[joint].parent].parent_joint;
+    while (above != RobotDescription::kNone && listed.count(above) == 0) {
+      above = robot.links[robot.joints[above].parent].parent_joint;
+    }
+    const bool first = above == RobotDescription::kNone;
+    placed.push_back(
+        placedIn(robot, first ? linkOf(robot, root) : robot.joints[above].child, joint));
   }
-  return chain;
+  return placed;
 }
 
 /// The link that the most fixed joints separate from a link above it.
@@ -209,10 +216,10 @@ void bindRobotDescription(py::module_& module) {
             return joints;
           },
           "all, in the order of the text")
-      .def(
-          "chain", &chainOf, "joints"_a, "root"_a = "",
-          "The joints of these names, each placed in the child of the one before, the first in the "
-          "link `root`.\n\nJoints between two of them stand at zero. Raises RobotError.")
+      .def("chain", &chainOf, "joints"_a, "root"_a = "",
+           "The joints of these names, each placed in the child of the nearest of them above it, "
+           "or in "
+           "the link `root`.\n\nJoints between two of them stand at zero. Raises RobotError.")
       .def(
           "tip",
           [](const RobotDescription& robot, const std::string& joint) {

@@ -181,6 +181,12 @@ void bindCalls(py::class_<Solver>& solver) {
 
 }  // namespace
 
+/// Of a solver that gives no regressor, joints.
+Eigen::Index linkCount(const Solver& solver) {
+  const auto* const regressor = solver.find<const ids::Regressor>();
+  return regressor != nullptr ? regressor->linkCount() : solver.get().jointCount();
+}
+
 void bindQuantities(py::class_<Solver>& solver) {
   using S = const Solver&;
   using Part = const PartOfCall&;

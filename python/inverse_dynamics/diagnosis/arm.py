@@ -135,7 +135,8 @@ def _of_description(arm: Arm, own: Solver) -> Solver:
 
 def _with_description(model: ArmModel, robot: Robot, solver: Solver, description: str) -> ArmModel:
     """With limits and, where the solver computes from it, the links of a description."""
-    chain = RobotDescription(description).chain(solver.joint_names, robot.root)
+    described = RobotDescription(description)
+    chain = described.chain(solver.joint_names, robot.root)
     names = ("lower", "upper", "effort")
     limits = np.array([[joint.limits.get(name, np.inf) for joint in chain] for name in names])
     model = replace(model, position_limits=limits[:2], effort_limits=limits[2])
@@ -150,8 +151,8 @@ def _with_description(model: ArmModel, robot: Robot, solver: Solver, description
         columns = engine.regressor(q, qd, qdd).reshape(*q.shape, -1, 10)
         return np.concatenate([np.einsum("njkc,kc->knj", columns, p) for p in own])
 
-    link_names, mass = tuple(joint.child for joint in chain), float(own[1][:, 0].sum())
-    return replace(model, links=links, link_names=link_names, mass=mass)
+    moved, mass = described.chain(engine.link_joints, robot.root), float(own[1][:, 0].sum())
+    return replace(model, links=links, link_names=tuple(j.child for j in moved), mass=mass)
 
 
 def _mass_parts(links: Floats) -> tuple[Floats, Floats]:

@@ -203,10 +203,11 @@ def _half_widths(fitter: ArmFitter, fit: ArmFit, currents: ArmData) -> Floats:
     deviations = [np.sqrt((len(currents) - 1) * np.var(without, axis=0))]
     data, prior, scores = fitter.information(fit, currents, _options())
     n = len(fitter.joint_names)
-    columns = (len(data) - 10 * n) // n
-    at = 10 * n + columns * np.arange(1, n + 1) - 1
+    rigid = fit.parameters.size
+    columns = (len(data) - rigid) // n
+    at = rigid + columns * np.arange(1, n + 1) - 1
     values = np.zeros(len(data))
-    values[: 10 * n] = fit.parameters.ravel()
+    values[:rigid] = fit.parameters.ravel()
     none = np.zeros((len(data), 0))
     for share in (1.0, _LOOSENED):
         known = Knowledge(

@@ -70,7 +70,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Unpack
 
-    from inverse_dynamics._core import ArmFitter, DescribedJoint, FastModel
+    from inverse_dynamics._core import ArmFitter, DescribedJoint, FastModel, RobotDescription
     from inverse_dynamics.arrays import Floats, Parameter
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.identification.drive_gains import KnownPayload
@@ -101,7 +101,8 @@ def identify(
 ) -> Identification:
     """Identify a physically consistent model with friction from recordings of a moving arm.
 
-    Joints of the chain that stand still are held: the model is that of the others, in this posture.
+    A tree is identified where the robot's tip names several links, or all ("*").
+    Joints that stand still are held: the model is that of the others, in this posture.
 
     Parameters
     ----------
@@ -199,7 +200,7 @@ def identify(
             "accept": accept,
             "hold_out": hold_out,
         }
-        moving = _without(robot, joints, still.parameters)
+        moving = _without(robot, joints, still.parameters, description)
         found = None
         with suppress(BagError):
             found = identify(
@@ -220,11 +221,11 @@ def identify(
     evaluations = [replace(e, measured=torques_with_gravity(e, plain)) for e in evaluations]
     by_day = len(evaluations) > 1 and blocks is None
     groups = _days(evaluations) if by_day else _groups(evaluations, blocks)
-    chain = _core.RobotDescription(description).chain(joints, robot.root)
+    moved = _core.RobotDescription(description).chain(fitter.link_joints, robot.root)
     solvers = baselines(robot, description)
-    limits = _effort_limits(chain) if by_day else None
+    limits = _effort_limits(moved, joints) if by_day else None
     held_out = _held_out(fitter, described, limits, solvers, groups, progress)
-    found = _result(fitter, described, chain, evaluations, groups, held_out, by_day=by_day)
+    found = _result(fitter, described, moved, evaluations, groups, held_out, by_day=by_day)
     notes = tuple(dict.fromkeys((*posture.notes, *unfitted, *found.notes)))
     found = replace(found, drive_gains=gains, notes=notes)
     check_result(found, accept)
@@ -233,7 +234,9 @@ def identify(
     return replace(found, hold_out=tuple(tests))
 
 
-def _without(robot: Robot, joints: Sequence[str], held: Mapping[str, Parameter]) -> Robot:
+def _without(
+    robot: Robot, joints: Sequence[str], held: Mapping[str, Parameter], description: str
+) -> Robot:
     """The robot's description with joints of the chain held, and what is stated of each of the others."""
     moves = [f"{LOCKED}{joint}" not in held for joint in joints]
     load = {name: at for name, at in robot.parameters.items() if name.startswith("payload.")}
@@ -243,10 +246,28 @@ def _without(robot: Robot, joints: Sequence[str], held: Mapping[str, Parameter])
         plugin=RIGID_BODY,
         model=None,
         parameters={**parameters, **held},
+        tip=_moved_tips(robot.tip, _core.RobotDescription(description), held),
         joints=tuple(compress(robot.joints, moves)),
         drive_gains=tuple(compress(robot.drive_gains, moves)),
         sign=tuple(compress(robot.sign, moves)),
     )
+
+
+def _moved_tips(tip: str, robot: RobotDescription, held: Mapping[str, Parameter]) -> str:
+    """Those of several tips that a joint still moves."""
+    above = {joint.child: joint for joint in robot.joints}
+    if "," not in tip or tip in above:
+        return tip
+    moved = []
+    for name in tip.split(","):
+        link = name.strip()
+        while link in above:
+            joint = above[link]
+            if joint.type != "fixed" and f"{LOCKED}{joint.name}" not in held:
+                moved.append(name.strip())
+                break
+            link = joint.parent
+    return ",".join(moved)
 
 
 def _description(robot: Robot) -> str:
@@ -319,9 +340,10 @@ def _groups(evaluations: Sequence[Evaluation], asked: int | None) -> list[list[B
     return [[block] for evaluation, count in pairs for block in blocks_of(evaluation, count)]
 
 
-def _effort_limits(chain: Sequence[DescribedJoint]) -> Floats:
-    """(n,) N m (prismatic N); infinite where none is stated."""
-    return np.array([joint.limits.get("effort", np.inf) for joint in chain])
+def _effort_limits(moved: Sequence[DescribedJoint], joints: Sequence[str]) -> Floats:
+    """(n,) N m (prismatic N); infinite where none is stated. moved: the joints of all links."""
+    stated = {joint.name: joint.limits.get("effort", np.inf) for joint in moved}
+    return np.array([stated[joint] for joint in joints])
 
 
 def _held_out(
@@ -395,7 +417,7 @@ def _model(
 def _result(
     fitter: ArmFitter,
     described: FastModel,
-    chain: Sequence[DescribedJoint],
+    moved: Sequence[DescribedJoint],
     evaluations: Sequence[Evaluation],
     groups: Sequence[Sequence[Block]],
     held_out: Sequence[HeldOutBlock],
@@ -403,7 +425,7 @@ def _result(
     by_day: bool,
 ) -> Identification:
     """The model of all blocks, and what the data tell of it."""
-    first, links = evaluations[0], tuple(joint.child for joint in chain)
+    first, links = evaluations[0], tuple(joint.child for joint in moved)
     blocks = [block for group in groups for block in group]
     chosen = choose(fitter, blocks)
     later = chosen.blocks
@@ -453,7 +475,9 @@ def _result(
         intervals=intervals(known, described, first.units),
         prior_decided=prior_decided(known, float(independent.mean() / samples), links),
         factor=factor,
-        band=with_levels(band_of(chosen, factor, blocks, _effort_limits(chain)), levels),
+        band=with_levels(
+            band_of(chosen, factor, blocks, _effort_limits(moved, fitter.joint_names)), levels
+        ),
         levels=levels,
         sketch=tuple(x for e in evaluations for x in sketch_of(e.log)),
         findings=(

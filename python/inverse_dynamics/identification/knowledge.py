@@ -65,7 +65,7 @@ class Knowledge:
 
     joints: tuple[str, ...]
     values: Floats  # (m,)
-    described: Floats  # (n, 10): the parameters of the prior
+    described: Floats  # (l, 10): the parameters of the prior, of all links
     data: Floats  # (m, m), of samples as if they were independent
     prior: Floats  # (m, m)
     scores: Floats  # (clusters, m)
@@ -156,7 +156,7 @@ def _values(fit: ArmFit, law: str) -> Floats:
 def weights_of_links(
     model: FastModel, links: Floats, blocks: Sequence[Block]
 ) -> list[list[Floats]]:
-    """Gravity torques of DOUBT of each link's mass, (N, n) of each block. links: (n, 10)."""
+    """Gravity torques of DOUBT of each link's mass, (N, n) of each block. links: (l, 10)."""
 
     def of(block: Block) -> Floats:
         still = np.zeros_like(block.q)
@@ -211,20 +211,20 @@ def intervals(known: Knowledge, model: FastModel, units: Sequence[str]) -> tuple
 
     units: of each joint's torque, N m or N.
     """
-    n = len(known.joints)
+    n, rigid = len(known.joints), known.described.size
     deviations = known.deviations
     factor = student_t(len(known.scores))
     found = []
-    for combination, k, name in _combinations(model, known.joints):
+    for combination, k, name in _combinations(model):
         direction = np.zeros(len(known.values))
-        direction[: 10 * n] = combination
+        direction[:rigid] = combination
         half = factor * float(np.linalg.norm(direction @ deviations))
         found.append(Interval(name, UNITS[k % 10], float(direction @ known.values), half, ""))
     half_widths: list[float] = (factor * np.linalg.norm(deviations, axis=1)).tolist()
-    columns = (len(known.values) - 10 * n) // n
+    columns = (len(known.values) - rigid) // n
     for j, joint in enumerate(known.joints):
         for c, (key, logarithm) in enumerate(_OWN[:columns]):
-            at = 10 * n + columns * j + c
+            at = rigid + columns * j + c
             value = float(known.values[at])
             width = half_widths[at] * (value if logarithm else 1.0)
             unit = _OWN_UNITS[key][units[j] == "N"]
@@ -232,32 +232,32 @@ def intervals(known: Knowledge, model: FastModel, units: Sequence[str]) -> tuple
     return tuple(found)
 
 
-def _combinations(model: FastModel, joints: Sequence[str]) -> list[tuple[Floats, int, str]]:
-    """Inertial combinations that torques depend on: coefficients (10 n,), and their names.
+def _combinations(model: FastModel) -> list[tuple[Floats, int, str]]:
+    """Inertial combinations that torques depend on: coefficients, ten of each link, and their names.
 
     Parameter k of each, the last that is independent, has coefficient one; the others are those
     that move with it [Gautier 1991, doi 10.1002/rob.4620080405].
     """
-    n = len(joints)
+    n, rigid = len(model.joint_names), 10 * len(model.link_joints)
     random = np.random.default_rng(0)
     q, qd, qdd = (random.uniform(-3, 3, (50 * n, n)) for _ in range(3))
-    Y = model.regressor(q, qd, qdd).reshape(-1, 10 * n)
+    Y = model.regressor(q, qd, qdd).reshape(-1, rigid)
     independent: list[int] = []
     kept = np.zeros((len(Y), 0))
-    for k in reversed(range(10 * n)):  # the distal links keep their parameters
+    for k in reversed(range(rigid)):  # the distal links keep their parameters
         column = Y[:, k] - kept @ (kept.T @ Y[:, k])
         if np.linalg.norm(column) > 1e-8 * (float(np.linalg.norm(Y[:, k])) + 1.0):
             kept = np.column_stack([kept, column / np.linalg.norm(column)])
             independent.append(k)
     independent.sort()
-    dependent = [k for k in range(10 * n) if k not in independent]
+    dependent = [k for k in range(rigid) if k not in independent]
     factors = np.linalg.lstsq(Y[:, independent], Y[:, dependent])[0]
     found = []
     for row, k in zip(factors, independent, strict=True):
-        coefficients = np.zeros(10 * n)
+        coefficients = np.zeros(rigid)
         coefficients[dependent] = np.where(np.abs(row) > 1e-9, row, 0.0)
         coefficients[k] = 1
-        found.append((coefficients, k, _name(coefficients, k, joints)))
+        found.append((coefficients, k, _name(coefficients, k, model.link_joints)))
     return found
 
 

@@ -79,9 +79,9 @@ class Finding:
 
 @dataclass(frozen=True)
 class IdentifiedModel:
-    """A physically consistent model: rigid bodies in the link frames of the description's chain."""
+    """A physically consistent model: rigid bodies in the link frames of the description's chain or tree."""
 
-    parameters: Floats  # (n, 10): m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz about the origin
+    parameters: Floats  # (l, 10), of l links: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz about the origin
     rotor_inertia: Floats  # (n,) kg m^2 (prismatic kg), seen at the joint
     friction: tuple[dict[str, float], ...]  # values of smooth_coulomb, by the model file's keys
     drive_gains: Floats | None  # (n,) N m/A where efforts are currents
@@ -192,9 +192,9 @@ class Identification(ResultFiles):
     recordings: tuple[Path, ...]
     joints: tuple[str, ...]
     units: tuple[str, ...]  # N m, or N of a prismatic joint
-    links: tuple[str, ...]  # the n links that the joints move, as the description names them
+    links: tuple[str, ...]  # the l links that joints move, as the description names them
     model: IdentifiedModel
-    prior: Floats  # (n, 10): the parameters of the prior, in the same frames
+    prior: Floats  # (l, 10): the parameters of the prior, in the same frames
     law: str  # of LAWS
     prior_strength: float
     # s by which efforts are later than the states, made up for in fits; negative: earlier. Held-out

@@ -6,7 +6,7 @@
 The description that was started from, with the inertia of the moving links replaced. A link of the model is a
 link of the description with all that is fixed to it: its <inertial> becomes that of the whole, and what is
 fixed to it has none any more. Everything else stays: comments, shapes, limits, order. The MJCF has the
-chain alone. Friction goes into both as far as they can hold it; a comment says what they can't.
+moving links alone. Friction goes into both as far as they can hold it; a comment says what they can't.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from inverse_dynamics.identification.result import identified_model, urdf_of
 from inverse_dynamics.outputs.yaml_text import yaml_number
 from inverse_dynamics.robots.descriptions import parse_description, read_description
 from inverse_dynamics.robots.link_parameters import about_center, inertial_elements, turned
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -42,8 +43,9 @@ def urdf_text(found: Identification) -> str:
     parse_description(text)  # refuses what isn't a URDF
     before, body, after = _around_root(text)
     robot = _parsed(body)
-    geometry = RobotDescription(text).chain(found.joints, found.robot.root)
-    lumped = _lumped_links(robot, found.joints, [joint.child for joint in geometry])
+    moving = identified_model(found).link_joints
+    geometry = RobotDescription(text).chain(moving, found.robot.root)
+    lumped = _lumped_links(robot, moving, [joint.child for joint in geometry])
     for joint, parameters in zip(geometry, found.model.parameters, strict=True):
         in_link = turned(parameters, joint.rotation_from_z)
         _set_inertial(_named(robot, "link", joint.child), in_link)
@@ -58,14 +60,20 @@ def urdf_text(found: Identification) -> str:
 
 
 def mjcf_text(found: Identification) -> str:
-    """A MuJoCo model of the chain, with a motor at each joint. Raises RobotError.
+    """A MuJoCo model of the moving links, with a motor at each joint. Raises RobotError.
 
     Joints have armature and friction by a <default> class each, for use in another model too.
     """
     ramps = np.array([_RAMP * law["width"] for law in found.model.friction])
-    H = identified_model(found).inertia_matrix(np.zeros(len(found.joints)))
+    model = identified_model(found)
+    H = model.inertia_matrix(np.zeros(len(found.joints)))
     description = RobotDescription(read_description(urdf_of(found)))
-    geometry = description.chain(found.joints, found.robot.root)
+    geometry = {j.name: j for j in description.chain(model.link_joints, found.robot.root)}
+    if follow := [name for name in geometry if name not in found.joints]:
+        raise RobotError(
+            f"robot {found.robot.name}: an MJCF is written of joints that mimic no other, got {listed(follow)}; "
+            "take the URDF"
+        )
     mujoco = ElementTree.Element("mujoco", model=found.robot.name)
     mujoco.append(ElementTree.Comment(f" {_comment(found, {})} "))
     ElementTree.SubElement(mujoco, "compiler", angle="radian", eulerseq="XYZ")
@@ -73,11 +81,12 @@ def mjcf_text(found: Identification) -> str:
     if found.robot.gravity is not None:  # MuJoCo's own points down too
         option.set("gravity", _numbers(found.robot.gravity))
     defaults = ElementTree.SubElement(mujoco, "default")
-    body = ElementTree.SubElement(mujoco, "worldbody")
+    world = ElementTree.SubElement(mujoco, "worldbody")
+    bodies: dict[str, ElementTree.Element] = {}
     motors = ElementTree.SubElement(mujoco, "actuator")
-    for joint, parameters, rotor, (damping, friction), slowness in zip(
-        geometry,
-        found.model.parameters,
+    links = dict(zip(geometry, found.model.parameters, strict=True))
+    for name, rotor, (damping, friction), slowness in zip(
+        found.joints,
         found.model.rotor_inertia,
         _damping_and_friction(found, ramps),
         2 * ramps / np.diag(np.linalg.inv(H)),
@@ -89,10 +98,17 @@ def mjcf_text(found: Identification) -> str:
             written["solreffriction"] = _numbers((slowness / friction, 1.0))
             written["solimpfriction"] = _numbers((1e-4, 1e-4))
         ElementTree.SubElement(
-            ElementTree.SubElement(defaults, "default", {"class": joint.name}), "joint", written
+            ElementTree.SubElement(defaults, "default", {"class": name}), "joint", written
         )
-        body = _mjcf_body(body, joint, turned(parameters, joint.rotation_from_z))
-        ElementTree.SubElement(motors, "motor", name=joint.name, joint=joint.name)
+        ElementTree.SubElement(motors, "motor", name=name, joint=name)
+    waiting = list(geometry.values())
+    while waiting:  # parents before children, as bodies are in each other
+        joint = waiting.pop(0)
+        if any(joint.parent == other.child for other in waiting):
+            waiting.append(joint)
+            continue
+        in_link = turned(links[joint.name], joint.rotation_from_z)
+        bodies[joint.child] = _mjcf_body(bodies.get(joint.parent, world), joint, in_link)
     ElementTree.indent(mujoco)
     license_line = "<!-- SPDX-License-Identifier: Apache-2.0 -->"
     return f"{license_line}\n{ElementTree.tostring(mujoco, encoding='unicode')}\n"
