@@ -120,7 +120,7 @@ class Truth:
         q, qd, qdd = self.states(seed)
         error = _torques(again, q, qd, qdd) - _torques(self.found, q, qd, qdd)
         # Combinations of inertial parameters come first.
-        combinations = _combinations(identified_model(self.found), self.found.joints)
+        combinations = _combinations(identified_model(self.found))
         true = [c @ self.found.model.parameters.ravel() for c, _, _ in combinations]
         return Result(
             error=np.sqrt((error**2).mean(axis=0)),
