@@ -99,6 +99,21 @@ void addMatrix(const FastBranch& b, const double* of_branch, const Matrices& sum
   }
 }
 
+/// `sum += k (q - rest)`, of springs.
+void addSprings(const FastBranches& all, const double* q, double* sum) {
+  const Model& model = *all.model;
+  for (Index j = 0; j < model.stiffness.size(); ++j) {
+    if (model.stiffness[j] != 0) sum[j] += model.stiffness[j] * (q[j] - model.rest[j]);
+  }
+}
+
+/// Adds the numbers to a diagonal.
+void addToDiagonal(const OwnedVector& numbers, const Matrices& matrix) {
+  for (Index j = 0; j < numbers.size(); ++j) {
+    matrix.data[j * (matrix.row_step + matrix.column_step)] += numbers[j];
+  }
+}
+
 void setZero(const Matrices& matrix, Index rows, Index columns) {
   for (Index j = 0; j < columns; ++j) {
     for (Index i = 0; i < rows; ++i) {
@@ -126,6 +141,10 @@ void torques(const Robot& robot, int structure, const double* q, const double* q
   } else {
     friction(robot, structure, q, qd, sum.numbers);
   }
+  addSprings(all, q, sum.numbers);
+  for (Index j = 0; j < all.model->motor_inertia.size(); ++j) {
+    if (all.model->motor_inertia[j] != 0) sum.numbers[j] += all.model->motor_inertia[j] * qdd[j];
+  }
   for (const FastBranch& b : all.branches) {
     b.fast->torques(positionsOf(b, q, q_b), motionOf(b, qd, qd_b), motionOf(b, qdd, qdd_b),
                     tau_b.numbers);
@@ -145,6 +164,7 @@ void coriolis(const Robot& robot, int /*structure*/, const double* q, const doub
 
 void gravity(const Robot& robot, int /*structure*/, const double* q, double* g) {
   Numbers q_b, g_b, sum{};
+  addSprings(branchesOf(robot), q, sum.numbers);
   for (const FastBranch& b : branchesOf(robot).branches) {
     b.fast->gravityVector(positionsOf(b, q, q_b), g_b.numbers);
     add(b, g_b.numbers, sum.numbers);
@@ -169,6 +189,7 @@ void inertia(const Robot& robot, int /*structure*/, const double* q, Matrices H)
   sumOfMatrices(robot, q, H, [](const FastBranch& b, const double* q_b, double* H_b) {
     b.fast->inertiaMatrix(q_b, H_b, jointsOf(b));
   });
+  addToDiagonal(branchesOf(robot).model->motor_inertia, H);
 }
 
 void components(const Robot& robot, int structure, const double* q, const double* qd, Matrices H,
@@ -245,6 +266,8 @@ void regressor(const Robot& robot, const double* q, const double* qd, const doub
                               jointsOf(b));
     for (int k = 0; k < 3; ++k) addMatrix(b, of_branch[k], sums[k]);
   }
+  addToDiagonal(all.model->stiffness, sums[0]);
+  addToDiagonal(all.model->motor_inertia, sums[2]);
 }
 
 void torqueDerivatives(const Robot& robot, int /*structure*/, const double* q, const double* qd,
@@ -392,17 +415,31 @@ void addBranches(const Robot& robot, const Samples (&x)[kCount], std::ptrdiff_t 
   }
 }
 
-/// The sum alone, of all states.
-template <std::size_t kCount, class Compute>
+/// The sum of all states, to which start(first, sum) gives its first values.
+template <std::size_t kCount, class Compute, class Start>
 void sumOfBranches(const Robot& robot, std::ptrdiff_t states, const Samples (&x)[kCount],
-                   const Samples& to, const Compute& compute) {
+                   const Samples& to, const Compute& compute, const Start& start) {
   const std::ptrdiff_t size = blockStates(robot);
   Block memory;
   for (std::ptrdiff_t first = 0; first < states; first += size) {
     const States sum = statesOf(memory, robot.joints, std::min(size, states - first), size);
-    std::fill_n(memory.numbers, sum.joints * size, 0.0);
+    start(first, sum);
     addBranches(robot, x, first, sum, compute);
     write(sum, to, first);
+  }
+}
+
+void setZero(const States& sum) { std::fill_n(sum.data, sum.joints * sum.joint_step, 0.0); }
+
+/// `sum += numbers_j (x_j - origin_j)` of the states from `first` on.
+void addProducts(const OwnedVector& numbers, const Samples& x, const OwnedVector* origin,
+                 std::ptrdiff_t first, const States& sum) {
+  for (Index j = 0; j < numbers.size(); ++j) {
+    if (numbers[j] == 0) continue;
+    const double* const from = x.data + j * x.joint_step + first * x.state_step;
+    const double start = origin != nullptr ? (*origin)[j] : 0;
+    for (Index k = 0; k < sum.count; ++k)
+      sum(j, k) += numbers[j] * (from[k * x.state_step] - start);
   }
 }
 
@@ -433,36 +470,43 @@ void frictionMany(const Robot& robot, int structure, std::ptrdiff_t states, Samp
 
 void torquesMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Samples qd,
                  Samples qdd, Samples tau) {
+  const Model& model = *branchesOf(robot).model;
   const auto compute = [](const FastModel& fast, const ConstStates* x, const States& tau_b) {
     fast.torquesBatch(x[0], x[1], x[2], tau_b);
   };
-  if (branchesOf(robot).model->friction.empty()) {
-    return sumOfBranches(robot, states, {q, qd, qdd}, tau, compute);
-  }
-  const std::ptrdiff_t size = blockStates(robot);
-  Block memory;
-  for (std::ptrdiff_t first = 0; first < states; first += size) {
-    const States sum = statesOf(memory, robot.joints, std::min(size, states - first), size);
-    frictionMany(robot, structure, sum.count, from(q, first), from(qd, first), {sum.data, size, 1});
-    addBranches(robot, {q, qd, qdd}, first, sum, compute);
-    write(sum, tau, first);
-  }
+  const auto start = [&](std::ptrdiff_t first, const States& sum) {
+    if (model.friction.empty()) {
+      setZero(sum);
+    } else {
+      frictionMany(robot, structure, sum.count, from(q, first), from(qd, first),
+                   {sum.data, sum.joint_step, sum.state_step});
+    }
+    addProducts(model.stiffness, q, &model.rest, first, sum);
+    addProducts(model.motor_inertia, qdd, nullptr, first, sum);
+  };
+  sumOfBranches(robot, states, {q, qd, qdd}, tau, compute, start);
 }
 
 void coriolisMany(const Robot& robot, int /*structure*/, std::ptrdiff_t states, Samples q,
                   Samples qd, Samples c) {
-  sumOfBranches(robot, states, {q, qd}, c,
-                [](const FastModel& fast, const ConstStates* x, const States& c_b) {
-                  fast.coriolisVectorBatch(x[0], x[1], c_b);
-                });
+  const auto compute = [](const FastModel& fast, const ConstStates* x, const States& c_b) {
+    fast.coriolisVectorBatch(x[0], x[1], c_b);
+  };
+  const auto start = [](std::ptrdiff_t /*first*/, const States& sum) { setZero(sum); };
+  sumOfBranches(robot, states, {q, qd}, c, compute, start);
 }
 
 void gravityMany(const Robot& robot, int /*structure*/, std::ptrdiff_t states, Samples q,
                  Samples g) {
-  sumOfBranches(robot, states, {q}, g,
-                [](const FastModel& fast, const ConstStates* x, const States& g_b) {
-                  fast.gravityVectorBatch(x[0], g_b);
-                });
+  const Model& model = *branchesOf(robot).model;
+  const auto compute = [](const FastModel& fast, const ConstStates* x, const States& g_b) {
+    fast.gravityVectorBatch(x[0], g_b);
+  };
+  const auto start = [&](std::ptrdiff_t first, const States& sum) {
+    setZero(sum);
+    addProducts(model.stiffness, q, &model.rest, first, sum);
+  };
+  sumOfBranches(robot, states, {q}, g, compute, start);
 }
 
 // ---------------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chain_dynamics/error.hpp"
@@ -58,6 +59,25 @@ std::vector<KernelSet> usableKernels(int joints) {
   return usable;
 }
 
+/// Of how many branches the kernels compute a model: of none, if it is a chain without springs.
+std::size_t branchCount(const Model& model) {
+  return model.branches.empty() && model.stiffness.size() > 0 ? 1 : model.branches.size();
+}
+
+/// The model itself, or a chain as a mechanism whose one branch it is.
+Model withBranches(const Model& model) {
+  Model result = model;
+  if (!model.branches.empty()) return result;
+  Branch branch{"", model.chain, {}, {}, {}};
+  for (Eigen::Index j = 0; j < model.chain.jointCount(); ++j) {
+    branch.S.push_back({j, j, 1});
+    branch.s.push_back(0);
+    branch.link.push_back(j);
+  }
+  result.branches.push_back(std::move(branch));
+  return result;
+}
+
 KernelSet kernelsNamed(const std::string& name, int joints) {
   for (const KernelSet& kernels : usableKernels(joints)) {
     if (name == kernels.one->name) return kernels;
@@ -88,8 +108,8 @@ struct FastModel::Data {
 
   /// Of a mechanism; each branch and the friction made by `made`.
   template <class Made>
-  Data(const Model& model, const Made& made) : Data(Model(model.chain)) {
-    robot.model = std::make_unique<const Model>(model);
+  Data(const Model& of, const Made& made) : Data(Model(of.chain)) {
+    const Model& model = *(robot.model = std::make_unique<const Model>(withBranches(of)));
     std::set<Eigen::Index> links;
     for (const Branch& branch : robot.model->branches) {
       robot.branches.emplace_back(branch, made(Model(branch.chain)));
@@ -111,6 +131,11 @@ struct FastModel::Data {
     }
     kernels = branchKernels(robot.branches.front().fast->kernels_->name);
     many = manyBranchKernels();
+    if (!of.branches.empty()) return;
+    // springs aren't among the parameters of links: the regressor is the chain's, whose numbers stand here
+    kernels.regressor = robot.branches.front().fast->kernels_->regressor;
+    many.regressor = robot.branches.front().fast->many_->regressor;
+    many.gram = robot.branches.front().fast->many_->gram;
   }
 
   /// A coordinate moves the links of the joints that follow it and of those after them.
@@ -208,7 +233,7 @@ FastModel::FastModel(const Model& model, const std::string& instruction_set) {
                      "at most " + std::to_string(kMaxJoints), std::to_string(n),
                      "use the functions of model.hpp");
   }
-  if (!model.branches.empty()) {
+  if (branchCount(model) > 0) {
     data_ = std::make_unique<const Data>(model, [&](const Model& branch) {
       auto fast = std::make_unique<const FastModel>(branch, instruction_set);
       warnings_.insert(warnings_.end(), fast->warnings().begin(), fast->warnings().end());
@@ -235,9 +260,9 @@ FastModel::FastModel(const Model& changed, const FastModel& original) {
                      std::to_string(n), "make the model without an original");
   }
   const std::vector<FastBranch>& branches = original.data_->robot.branches;
-  if (changed.branches.size() != branches.size()) {
+  if (branchCount(changed) != branches.size()) {
     throw ModelError("fast model of " + changed.name, "branches", std::to_string(branches.size()),
-                     std::to_string(changed.branches.size()), "make the model without an original");
+                     std::to_string(branchCount(changed)), "make the model without an original");
   }
   if (!branches.empty()) {
     auto next = branches.begin();

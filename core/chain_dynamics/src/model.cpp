@@ -28,6 +28,42 @@ ParameterSets setsOf(const Model& model) {
   return {model.row_parameters, model.gravity_parameters};
 }
 
+/// Torques of springs, and of the inertia that motors have: computed before an output may take the place of
+/// an input, to be added to the torques of bodies.
+class OwnTorques {
+ public:
+  OwnTorques(const Model& model, const ConstVectorRef& q)
+      : tau_(model.stiffness.size() + model.motor_inertia.size()),
+        springs_(model.stiffness.size()) {
+    for (Eigen::Index j = 0; j < springs_; ++j) {
+      const double k = model.stiffness[j];
+      tau_[j] = k == 0 ? 0 : k * (q[j] - model.rest[j]);  // a NaN goes no further
+    }
+  }
+  OwnTorques(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qdd)
+      : OwnTorques(model, q) {
+    motors_ = model.motor_inertia.size();
+    for (Eigen::Index j = 0; j < motors_; ++j) {
+      const double I = model.motor_inertia[j];
+      tau_[springs_ + j] = I == 0 ? 0 : I * qdd[j];
+    }
+  }
+
+  void addTo(VectorRef tau) const {
+    for (Eigen::Index j = 0; j < springs_; ++j) tau[j] += tau_[j];
+    for (Eigen::Index j = 0; j < motors_; ++j) tau[j] += tau_[springs_ + j];
+  }
+
+ private:
+  Scratch<double, 2 * kStackJoints> tau_;
+  Eigen::Index springs_, motors_ = 0;
+};
+
+/// Adds the inertia that motors have to the diagonal of H.
+void addMotors(const Model& model, MatrixRef H) {
+  for (Eigen::Index j = 0; j < model.motor_inertia.size(); ++j) H(j, j) += model.motor_inertia[j];
+}
+
 /// What laws of friction call load: the gravity torques, or zeros where none asks for them.
 class Load {
  public:
@@ -122,9 +158,37 @@ void checkCoupling(const Model& model) {
 
 void checkBranches(const Model& model) {
   if (model.branches.empty()) return;
-  checkMechanism({model.chain, model.branches});
+  checkMechanism(
+      {model.chain, model.branches, {model.motor_inertia.begin(), model.motor_inertia.end()}});
   if (model.row_parameters.empty() && model.gravity_parameters.empty()) return;
   throw ModelError("model " + model.name, "parameters of a mechanism", "one set, of its branches",
+                   "others for rows or for gravity", "leave them out");
+}
+
+void checkSprings(const Model& model) {
+  if (model.stiffness.size() == 0) return;
+  const std::string where = "model " + model.name;
+  checkCount(model, "stiffness of springs", static_cast<std::size_t>(model.stiffness.size()));
+  if (model.rest.size() != model.stiffness.size()) {
+    throw ModelError(where, "springs at rest", "a position for each stiffness",
+                     std::to_string(model.rest.size()), "");
+  }
+  for (Eigen::Index j = 0; j < model.stiffness.size(); ++j) {
+    const auto joint = static_cast<std::size_t>(j);
+    const std::string spring = "spring of joint " + nameOf(model, joint);
+    if (!std::isfinite(model.stiffness[j]) || !std::isfinite(model.rest[j])) {
+      throw ModelError(where, spring, "finite numbers, of stiffness and rest",
+                       std::to_string(model.stiffness[j]) + " and " + std::to_string(model.rest[j]),
+                       "");
+    }
+    if (model.stiffness[j] == 0 || model.chain.joints()[joint].type != JointType::kContinuous) {
+      continue;
+    }
+    throw ModelError(where, spring, "a joint with limits, as a spring tells whole turns apart",
+                     "a continuous one", "make the joint revolute");
+  }
+  if (model.row_parameters.empty() && model.gravity_parameters.empty()) return;
+  throw ModelError(where, "parameters of a robot with springs", "one set",
                    "others for rows or for gravity", "leave them out");
 }
 
@@ -166,6 +230,7 @@ void checkExperience(const Model& model) {
 void checkModel(const Model& model) {
   checkParameterSets(model.chain, setsOf(model));
   checkBranches(model);
+  checkSprings(model);
   checkFrictionLaws(model);
   checkCoupling(model);
   checkDriveGains(model);
@@ -174,13 +239,19 @@ void checkModel(const Model& model) {
 
 void torques(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
              const ConstVectorRef& qdd, VectorRef tau) {
-  if (!model.branches.empty()) return sums::torques(model, q, qd, qdd, tau);
-  torques(model.chain, setsOf(model), q, qd, qdd, tau);
+  const OwnTorques own(model, q, qdd);
+  if (!model.branches.empty()) {
+    sums::torques(model, q, qd, qdd, tau);
+  } else {
+    torques(model.chain, setsOf(model), q, qd, qdd, tau);
+  }
+  own.addTo(tau);
 }
 
 void inertiaMatrix(const Model& model, const ConstVectorRef& q, MatrixRef H) {
-  if (!model.branches.empty()) return sums::inertiaMatrix(model, q, H);
-  inertiaMatrix(model.chain, setsOf(model), q, H);
+  if (model.branches.empty()) return inertiaMatrix(model.chain, setsOf(model), q, H);
+  sums::inertiaMatrix(model, q, H);
+  addMotors(model, H);
 }
 
 void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
@@ -196,8 +267,13 @@ void coriolisMatrix(const Model& model, const ConstVectorRef& q, const ConstVect
 }
 
 void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g) {
-  if (!model.branches.empty()) return sums::gravityVector(model, q, g);
-  gravityVector(model.chain, setsOf(model), q, g);
+  const OwnTorques own(model, q);
+  if (!model.branches.empty()) {
+    sums::gravityVector(model, q, g);
+  } else {
+    gravityVector(model.chain, setsOf(model), q, g);
+  }
+  own.addTo(g);
 }
 
 void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
@@ -207,21 +283,33 @@ void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstV
     coriolisVector(model, q, qd, c);
     return gravityVector(model, q, g);
   }
+  const OwnTorques own(model, q);
   dynamicComponents(model.chain, setsOf(model), q, qd, H, c, g);
+  own.addTo(g);
 }
 
 double kineticEnergy(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd) {
   assert(model.row_parameters.empty());
-  if (!model.branches.empty()) return sums::kineticEnergy(model, q, qd);
-  return kineticEnergy(model.chain, q, qd);
+  if (model.branches.empty()) return kineticEnergy(model.chain, q, qd);
+  double energy = sums::kineticEnergy(model, q, qd);
+  for (Eigen::Index j = 0; j < model.motor_inertia.size(); ++j) {
+    energy += 0.5 * model.motor_inertia[j] * qd[j] * qd[j];
+  }
+  return energy;
 }
 
 double potentialEnergy(const Model& model, const ConstVectorRef& q) {
   const bool own = !model.gravity_parameters.empty();
   assert(own || model.row_parameters.empty());
-  if (!model.branches.empty()) return sums::potentialEnergy(model, q);
-  return internal::potentialEnergyOf(model.chain,
-                                     own ? model.gravity_parameters : model.chain.links(), q);
+  double energy = !model.branches.empty()
+                      ? sums::potentialEnergy(model, q)
+                      : internal::potentialEnergyOf(
+                            model.chain, own ? model.gravity_parameters : model.chain.links(), q);
+  for (Eigen::Index j = 0; j < model.stiffness.size(); ++j) {
+    if (model.stiffness[j] == 0) continue;
+    energy += 0.5 * model.stiffness[j] * (q[j] - model.rest[j]) * (q[j] - model.rest[j]);
+  }
+  return energy;
 }
 
 bool frictionDependsOnLoad(const Model& model) {
@@ -270,6 +358,9 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
   const auto loadSlope = [&](Eigen::Index j) {
     return frictionLoadSlope(model.friction[static_cast<std::size_t>(j)], velocity(j), load.g[j]);
   };
+  for (Eigen::Index j = 0; j < model.stiffness.size(); ++j) {
+    dtau_dq(j, j) += loadSlope(j) * model.stiffness[j];
+  }
   if (!model.branches.empty()) {
     Scratch<double> memory(n);
     Eigen::Map<Eigen::VectorXd> slopes(&memory[0], n);
@@ -294,9 +385,12 @@ void torqueDerivatives(const Model& model, const ConstVectorRef& q, const ConstV
                        const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
                        MatrixRef dtau_dqdd) {
   if (!model.branches.empty()) {
-    return sums::torqueDerivatives(model, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
+    sums::torqueDerivatives(model, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
+    addMotors(model, dtau_dqdd);
+  } else {
+    torqueDerivatives(model.chain, setsOf(model), q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
   }
-  torqueDerivatives(model.chain, setsOf(model), q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
+  dtau_dq.diagonal().head(model.stiffness.size()) += model.stiffness;
 }
 
 }  // namespace v2

@@ -2,6 +2,7 @@
 
 #include "chain_dynamics/model_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -60,11 +61,25 @@ void addCoupling(const std::vector<JointEntry>& entries, Model& model) {
   if (!coupling.isIdentity(0)) model.coupling = coupling;
 }
 
+void addSprings(const std::vector<JointEntry>& entries, Model& model) {
+  if (std::none_of(entries.begin(), entries.end(),
+                   [](const JointEntry& entry) { return entry.stiffness != 0; })) {
+    return;
+  }
+  model.stiffness.resize(model.chain.jointCount());
+  model.rest.resize(model.chain.jointCount());
+  for (Eigen::Index j = 0; j < model.rest.size(); ++j) {
+    model.stiffness[j] = entries[static_cast<std::size_t>(j)].stiffness;
+    model.rest[j] = entries[static_cast<std::size_t>(j)].rest;
+  }
+}
+
 /// Everything beyond the chain, in torques.
 void addIdentified(const std::vector<JointEntry>& entries, const Conventions& conventions,
                    Model& model) {
   const bool has_deviation = !entries.front().torque_deviation.empty();
   addCoupling(entries, model);
+  addSprings(entries, model);
   model.drive_gains.resize(conventions.gains ? model.chain.jointCount() : 0);
   model.torque_deviation.resize(has_deviation ? model.chain.jointCount() : 0);
   for (std::size_t j = 0; j < entries.size(); ++j) {

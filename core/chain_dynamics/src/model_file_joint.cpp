@@ -220,6 +220,15 @@ void readExperience(LocatedMap& map, int schema, JointEntry& entry) {
   }
 }
 
+void readSpring(const LocatedValue& value, int schema, JointEntry& entry) {
+  if (schema < 2) refuseNewer(value, "no such key");
+  LocatedMap map = value.map();
+  map.expect({"stiffness", "rest"});
+  entry.stiffness = map.required("stiffness").number();
+  entry.rest = map.required("rest").number();
+  map.rejectOthers();
+}
+
 /// The parameters of the link: one set of ten numbers, or for this row one set per link.
 void readParameters(LocatedMap& map, const Conventions& conventions, std::size_t joints,
                     JointEntry& entry) {
@@ -255,7 +264,8 @@ void readPlaceInTree(LocatedMap& map, JointEntry& entry) {
     if (const auto offset = followed.optional("offset")) entry.offset += offset->number();
     followed.rejectOthers();
   }
-  for (const char* const key : {"limits", "drive_gain", "friction", "torque_deviation", "seen"}) {
+  for (const char* const key :
+       {"limits", "drive_gain", "spring", "friction", "torque_deviation", "seen"}) {
     if (const auto value = map.optional(key)) {
       value->fail("no such key of a joint that mimics another one",
                   "state it of joint " + entry.mimics.front().joint);
@@ -291,6 +301,7 @@ JointEntry readJoint(const LocatedValue& value, const Conventions& conventions,
   if (const auto rotor_inertia = map.optional("rotor_inertia")) {
     entry.joint.rotor_inertia = rotor_inertia->number();
   }
+  if (const auto spring = map.optional("spring")) readSpring(*spring, conventions.schema, entry);
   if (conventions.tree) readPlaceInTree(map, entry);
   if (conventions.gains && entry.mimics.empty()) {
     entry.drive_gain.push_back(map.required("drive_gain").number());

@@ -140,6 +140,11 @@ std::string identifiedLines(const Model& model, std::size_t j, const std::string
     return std::string("    ") + key + ": " + number(values[static_cast<Eigen::Index>(j)]) + "\n";
   };
   std::string text = entry("drive_gain", model.drive_gains);
+  const auto k = static_cast<Eigen::Index>(j);
+  if (model.stiffness.size() > 0 && model.stiffness[k] != 0) {
+    text += "    spring: {stiffness: " + number(model.stiffness[k]) +
+            ", rest: " + number(model.rest[k]) + "}\n";
+  }
   if (!model.friction.empty()) text += frictionLine(model.friction[j]);
   if (model.coupling.size() > 0 && !model.friction.empty()) {
     text += "    coupling: " + list(model.coupling.row(static_cast<Eigen::Index>(j))) + "\n";

@@ -86,6 +86,17 @@ Model withCoupling(Model model) {
   return model;
 }
 
+Model withSprings(Model model) {
+  const Index n = model.chain.jointCount();
+  model.stiffness = Eigen::VectorXd::LinSpaced(n, 3, 11);
+  model.rest = Eigen::VectorXd::LinSpaced(n, -0.7, 0.4);
+  for (Index j = 0; j < n; ++j) {
+    const Joint& joint = model.chain.joints()[static_cast<std::size_t>(j)];
+    if (j == 1 || joint.type == JointType::kContinuous) model.stiffness[j] = 0;
+  }
+  return model;
+}
+
 std::vector<NamedModel> models() {
   std::vector<NamedModel> all;
   for (const Index n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 13, 30, 64}) {
@@ -116,6 +127,8 @@ std::vector<NamedModel> models() {
     const std::string name = "any axes, " + std::to_string(n) + " joints";
     const Model changing = withChangingSteps(Model(randomChain(n)), 7);
     all.push_back({name + ", changing steps", changing});
+    all.push_back({name + ", springs", withSprings(Model(randomChain(n)))});
+    all.push_back({name + ", springs, changing steps", withSprings(changing)});
     if (n > 2) all.push_back({name + ", coupled motors", withCoupling(changing)});
   }
   for (const std::string robot : {"ur10", "panda"}) {

@@ -36,6 +36,9 @@ Model identified(const Chain& chain, bool rows, bool gravity, std::uint32_t seed
 /// The same with friction that depends on load, on velocity (Stribeck), on both, and on neither.
 Model withChangingSteps(Model model, std::uint32_t seed);
 
+/// The same with springs at all joints that aren't continuous, but the second.
+Model withSprings(Model model);
+
 struct NamedModel {
   std::string name;
   Model model;

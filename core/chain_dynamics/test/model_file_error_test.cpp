@@ -237,8 +237,8 @@ TEST(ModelFileError, WhatSchemaOneDoesntHaveNamesTheRemedy) {
             "arm.yaml:13: joint one: friction.law: expected another law in schema 1, got "
             "'smooth_coulomb'; write schema: 2 at the top of the file");
   const std::string plain = file("modified_dh", joint("one", withLink(dh("0", "0", "0", "0"))));
-  for (const std::string key :
-       {"torque_deviation: 1", "seen: {q: [0, 1], qd: [0, 1], qdd: [0, 1]}"}) {
+  for (const std::string key : {"torque_deviation: 1", "seen: {q: [0, 1], qd: [0, 1], qdd: [0, 1]}",
+                                "spring: {stiffness: 1, rest: 0}"}) {
     EXPECT_THAT(fileError(plain + "  " + key + "\n"),
                 AllOf(StartsWith("arm.yaml:14: joint one: " + key.substr(0, key.find(':')) +
                                  ": expected no such key in schema 1, got"),

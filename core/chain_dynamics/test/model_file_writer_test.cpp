@@ -37,6 +37,8 @@ void expectSame(const Model& written, const Model& read) {
   EXPECT_EQ(read.chain.jointTypes(), written.chain.jointTypes());
   EXPECT_EQ(read.drive_gains, written.drive_gains);
   EXPECT_EQ(read.torque_deviation, written.torque_deviation);
+  EXPECT_EQ(read.stiffness, written.stiffness);
+  EXPECT_EQ(read.rest, written.rest);
   EXPECT_EQ(read.row_parameters.size(), written.row_parameters.size());
   EXPECT_EQ(read.gravity_parameters.size(), written.gravity_parameters.size());
   EXPECT_LT(difference(read.chain.tip().p, written.chain.tip().p), kRounding);
@@ -79,6 +81,8 @@ TEST(ModelFileWriter, WhatIdentificationFindsComesBackDigitByDigit) {
   robot.source = "two \"lines\",\nwith \\ and ü";
   robot.torque_deviation = Eigen::VectorXd::LinSpaced(7, 0.1, 1.0 / 3);
   robot.seen.assign(7, {{-1.0 / 3, 2}, {-1e-7, 1.5}, {-9, 12.125}});
+  robot.stiffness = Eigen::VectorXd::LinSpaced(7, 1.0 / 3, 0);
+  robot.rest = Eigen::VectorXd::LinSpaced(7, -1.0 / 7, 0);
   expectSame(robot, model(modelFileText(robot)));
 }
 

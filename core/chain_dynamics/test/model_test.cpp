@@ -91,6 +91,40 @@ TEST(Model, EnergiesAreThoseOfInertiaAndGravity) {
   }
 }
 
+// g = g_bodies + k (q - rest), and all that follows from it.
+TEST(Model, SpringsAreAPartOfGravity) {
+  constexpr double kStep = 1e-5;
+  constexpr double kDifferences = 1e-7;
+  const Model bare = robotModel("franka_gaz2019_feasible");
+  Model model = bare;
+  const Eigen::VectorXd k = Eigen::VectorXd::LinSpaced(7, 3, -9), rest = k / 20;
+  model.stiffness = k;
+  model.rest = rest;
+  checkModel(model);
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(7, -2, 1.5), qd = -q, qdd = 2 * q;
+  const Eigen::VectorXd torque = k.cwiseProduct(q - rest);
+  Values without(7), with(7);
+  without.compute(bare, q, qd, qdd);
+  with.compute(model, q, qd, qdd);
+  EXPECT_LT(difference(with.g, without.g + torque), kRounding);
+  EXPECT_LT(difference(with.g_alone, without.g + torque), kRounding);
+  EXPECT_LT(difference(with.tau, without.tau + torque), kRounding);
+  EXPECT_EQ(with.H, without.H);
+  EXPECT_EQ(with.c, without.c);
+  for (Eigen::Index i = 0; i < 7; ++i) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(7, i);
+    const double rise = potentialEnergy(model, q + step) - potentialEnergy(model, q - step);
+    EXPECT_NEAR(rise / (2 * kStep), with.g[i], kDifferences) << i;
+  }
+  Eigen::MatrixXd by_q(7, 7), by_qd(7, 7), by_qdd(7, 7), by_q_bare(7, 7);
+  torqueDerivatives(bare, q, qd, qdd, by_q_bare, by_qd, by_qdd);
+  torqueDerivatives(model, q, qd, qdd, by_q, by_qd, by_qdd);
+  EXPECT_LT(difference(by_q, by_q_bare + Eigen::MatrixXd(k.asDiagonal())), kRounding);
+  Eigen::VectorXd in_place = q;
+  torques(model, in_place, qd, qdd, in_place);
+  EXPECT_EQ(in_place, with.tau);
+}
+
 // Its mass hangs 1.5 m below the root frame's origin.
 TEST(Model, PotentialEnergyIsZeroAtTheRootFramesOrigin) {
   const Model model(test::pendulum(2, 1.5, 9.81));
@@ -244,6 +278,21 @@ TEST(ModelError, PartsMustFit) {
   EXPECT_THAT(error(model), HasSubstr("seen ranges: expected none, or one per joint (1), got 2"));
   model.seen = {{{1, 0}, {0, 1}, {0, 1}}};
   EXPECT_THAT(error(model), HasSubstr("seen range of joint pivot: expected finite numbers"));
+
+  model = pendulum;
+  model.stiffness = Eigen::VectorXd::Constant(1, 5);
+  EXPECT_THAT(error(model), HasSubstr("springs at rest: expected a position for each stiffness"));
+  model.rest = Eigen::VectorXd::Constant(1, kNaN);
+  EXPECT_THAT(error(model), HasSubstr("spring of joint pivot: expected finite numbers"));
+  model.rest[0] = 0.1;
+  EXPECT_EQ(error(model), "no error");
+  model.gravity_parameters = model.chain.links();
+  EXPECT_THAT(error(model), HasSubstr("parameters of a robot with springs: expected one set"));
+  model.gravity_parameters.clear();
+  std::vector<Joint> joints = model.chain.joints();
+  joints[0].type = JointType::kContinuous;
+  model.chain = Chain("pendulum", joints, model.chain.links(), model.chain.gravity());
+  EXPECT_THAT(error(model), HasSubstr("spring of joint pivot: expected a joint with limits"));
 
   model = pendulum;
   model.gravity_parameters.resize(2, LinkParameters::zero());

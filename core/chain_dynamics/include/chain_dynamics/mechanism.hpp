@@ -57,6 +57,10 @@ struct Mechanism {
 
   /// Joints of the same name are one joint: it moves one link, in the same way in all branches.
   std::vector<Branch> branches;
+
+  /// Empty: none. Otherwise rotor inertia of each coordinate that isn't among that of the branches; kg m^2
+  /// (prismatic kg).
+  std::vector<double> motor_inertia = {};
 };
 
 /// Most coordinates; joints of one branch; joints, each counted once.

@@ -58,6 +58,9 @@ struct Model {
   explicit Model(Mechanism mechanism)
       : chain(std::move(mechanism.coordinates)),
         branches(std::move(mechanism.branches)),
+        motor_inertia(Eigen::Map<const Eigen::VectorXd>(
+            mechanism.motor_inertia.data(),
+            static_cast<Eigen::Index>(mechanism.motor_inertia.size()))),
         name(chain.name()) {}
 
   Chain chain;
@@ -66,6 +69,16 @@ struct Model {
   /// name, type and limits of each coordinate [mechanism.hpp]: n is the number of coordinates, and
   /// there are no row parameters and gravity parameters.
   std::vector<Branch> branches = {};
+
+  /// Empty: none. Otherwise the mechanism's motor_inertia, which is on the diagonal of H.
+  OwnedVector motor_inertia = {};
+
+  /// Empty: no springs. Otherwise, for each coordinate, the stiffness k of a spring [N m/rad; prismatic
+  /// N/m] and the position at which it is at rest [rad; m]. Its torque `k (q - rest)` is part of
+  /// gravityVector(): g is the gradient of the potential energy of gravity and springs. Not of continuous
+  /// joints, nor with row_parameters or gravity_parameters.
+  OwnedVector stiffness = {};
+  OwnedVector rest = {};
 
   /// Empty: chain.links() for every row of H, C qd, g. Otherwise n sets of n links, and row j is
   /// that of a chain with set j; chain.links() are then without meaning.
@@ -159,7 +172,7 @@ void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVect
 void coriolisMatrix(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     MatrixRef C);
 
-/// Gravity torques: `g(q)`.
+/// Gravity torques, and those of springs: `g(q)`.
 ///
 /// @param[out] g  n; N m (prismatic N).
 void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g);
@@ -175,8 +188,8 @@ void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstV
 /// Kinetic energy [J]: `T(q, qd) = 1/2 qd' H qd`, rotors included; for models without row parameters.
 double kineticEnergy(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd);
 
-/// Potential energy of gravity [J]: `U(q)`, zero where all mass is at the root frame's origin; its
-/// gradient is gravityVector(). For models without row parameters, or with some for gravity.
+/// Potential energy of gravity and springs [J]: `U(q)`, zero where all mass is at the root frame's origin and
+/// all springs are at rest; its gradient is gravityVector(). For models without row parameters, or with some for gravity.
 double potentialEnergy(const Model& model, const ConstVectorRef& q);
 
 /// Whether friction depends on the gravity torques, and so on q: a law has a load coefficient.
