@@ -223,6 +223,7 @@ class Reader {
     checkOneRoot(robot);
     checkNoLoop();
     readRotorInertia(root, robot_, findings_);
+    readRos2Control(root, robot_, findings_);
     robot_.warnings = findings_.texts();
     return std::move(robot_);
   }

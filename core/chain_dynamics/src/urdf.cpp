@@ -18,6 +18,7 @@
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
 #include "definite_inertia.hpp"
+#include "follower.hpp"
 #include "plausibility.hpp"
 
 namespace chain_dynamics {
@@ -675,7 +676,8 @@ class Coordinates {
       if (!taken_.insert(joint.name).second) continue;
       Joint& to = joints_[static_cast<std::size_t>(coordinate_[leader.joint])];
       if (follow) {
-        addFollower(to, joint, leader);
+        const std::string doubt = addFollower(to, joint, leader.multiplier, leader.offset);
+        if (!doubt.empty()) warnings_.push_back(doubt);
       } else {
         to = joint;
         to.placement = Transform<double>::identity();
@@ -701,30 +703,6 @@ class Coordinates {
 
  private:
   std::size_t indexOf(const Joint& joint) const { return robot_.jointIndex(joint.name); }
-
-  void addFollower(Joint& to, const Joint& joint, const RobotDescription::Mimic& leader) {
-    const double a = leader.multiplier;
-    to.rotor_inertia += a * a * joint.rotor_inertia;
-    to.damping += a * a * joint.damping;
-    to.friction += std::abs(a) * joint.friction;
-    if (a == 0) return;
-    const JointLimits& limits = joint.limits;
-    const double ends[] = {(limits.lower - leader.offset) / a, (limits.upper - leader.offset) / a};
-    const double lower = std::max(to.limits.lower, std::min(ends[0], ends[1]));
-    const double upper = std::min(to.limits.upper, std::max(ends[0], ends[1]));
-    if (lower <= upper) {
-      to.limits.lower = lower;
-      to.limits.upper = upper;
-    } else {
-      warnings_.push_back(printable("joint " + to.name + ": no position within its limits is one " +
-                                    "within those of joint " + joint.name +
-                                    ", which follows it: they aren't used"));
-    }
-    for (double JointLimits::*const limit : {&JointLimits::velocity, &JointLimits::acceleration,
-                                             &JointLimits::deceleration, &JointLimits::jerk}) {
-      to.limits.*limit = std::min(to.limits.*limit, limits.*limit / std::abs(a));
-    }
-  }
 
   const RobotDescription& robot_;
   std::vector<Eigen::Index> link_, coordinate_;  // of joints of the description
@@ -764,7 +742,7 @@ Chain chainFromUrdf(const std::string& urdf_xml, const UrdfOptions& options) {
 }
 
 Mechanism mechanismFromRobot(const RobotDescription& robot, const UrdfOptions& options,
-                             const std::vector<std::string>& tips) {
+                             const std::vector<std::string>& tips, bool branches_of_chains) {
   const std::size_t root = rootOf(robot, options);
   const std::vector<std::size_t> links = tipLinks(robot, options, root, tips);
   std::vector<Path> paths;
@@ -773,7 +751,8 @@ Mechanism mechanismFromRobot(const RobotDescription& robot, const UrdfOptions& o
     const RobotDescription::Joint& joint = robot.joints[step.joint];
     return isMovable(joint) && joint.mimic;
   };
-  if (links.size() == 1 && std::none_of(paths[0].begin(), paths[0].end(), mimics)) {
+  if (!branches_of_chains && links.size() == 1 &&
+      std::none_of(paths[0].begin(), paths[0].end(), mimics)) {
     UrdfOptions one = options;
     one.tip = robot.links[links[0]].name;
     return {chainFromRobot(robot, one), {}};

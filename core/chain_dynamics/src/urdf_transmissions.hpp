@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Rotor inertia that the transmissions of a URDF state.
+/// What a URDF says about motors: rotor inertia of its transmissions, and `<ros2_control>`.
 
 #pragma once
 
@@ -19,6 +19,11 @@ inline namespace v2 {
 /// no error.
 void readRotorInertia(const tinyxml2::XMLElement& robot_element, RobotDescription& robot,
                       Findings& findings);
+
+/// Takes `<mimic>` from joints that a `<ros2_control>` states with `mimic="false"`, and adds its
+/// transmissions to the robot.
+void readRos2Control(const tinyxml2::XMLElement& robot_element, RobotDescription& robot,
+                     Findings& findings);
 
 }  // namespace v2
 }  // namespace chain_dynamics

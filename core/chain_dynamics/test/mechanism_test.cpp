@@ -16,6 +16,7 @@
 
 #include "chain_dynamics/fast_model.hpp"
 #include "chain_dynamics/model.hpp"
+#include "chain_dynamics/robot_description.hpp"
 #include "urdf_texts.hpp"
 
 namespace chain_dynamics {
@@ -184,6 +185,176 @@ TEST(Mechanism, RefusesCoordinatesThatMoveNothingOfTheirOwn) {
   odd = sound;
   odd.branches[1].link[1] = 7;
   EXPECT_THAT(errorOf(odd), HasSubstr("without a gap"));
+}
+
+Motors motors(const Eigen::MatrixXd& M, const Names& names = {}) { return {M, {}, names, {}}; }
+
+std::string errorOf(const Mechanism& mechanism, const Motors& motors) {
+  try {
+    withMotors(mechanism, motors);
+  } catch (const ModelError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Motors, AreCoordinatesThatMoveJoints) {
+  const Mechanism joints = mechanism(torso());  // right_arm, waist, left_arm
+  Eigen::MatrixXd M(3, 2);
+  M << 0, -0.5,  //
+      1, 0,      //
+      1, 2;
+  const Mechanism arms = withMotors(joints, motors(M));
+  EXPECT_THAT(arms.coordinates.jointNames(), ElementsAre("waist", "motor_2"));
+  const Branch& left = arms.branches[0];
+  ASSERT_THAT(left.chain.jointNames(), ElementsAre("waist", "left_arm"));
+  ASSERT_EQ(left.S.size(), 3U);
+  EXPECT_EQ(left.S[2].joint, 1);
+  EXPECT_EQ(left.S[2].coordinate, 1);
+  EXPECT_EQ(left.S[2].factor, 2);
+  // -1 <= -q / 2 <= 2 of the right arm, which the motor moves alone
+  const JointLimits& limits = arms.coordinates.joints()[1].limits;
+  EXPECT_DOUBLE_EQ(limits.lower, -4);
+  EXPECT_DOUBLE_EQ(limits.upper, 2);
+  EXPECT_DOUBLE_EQ(limits.velocity, 4 * 2);
+  EXPECT_EQ(limits.effort, INFINITY);  // it moves two joints
+  EXPECT_EQ(arms.coordinates.joints()[0].limits.effort, 3);
+  EXPECT_THAT(withMotors(joints, motors(M, {"a", "b"})).coordinates.jointNames(),
+              ElementsAre("a", "b"));
+  const Mechanism geared = withMotors(joints, motors(Eigen::MatrixXd::Identity(3, 3) / -100));
+  EXPECT_DOUBLE_EQ(geared.coordinates.joints()[2].limits.effort, 0.03);
+}
+
+TEST(Motors, HaveRotorInertiaOfTheirOwn) {
+  Motors shared = motors(Eigen::Matrix3d::Identity() + Eigen::Matrix3d::Ones());
+  const Mechanism joints = mechanism(torso());
+  const Model without(withMotors(joints, shared));
+  shared.rotor_inertia = {1, 0, 3};
+  const Model with(withMotors(joints, shared));
+  EXPECT_EQ(with.chain.joints()[2].rotor_inertia, 3);
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(3, 0.2, 0.9), added{{1 * q[0], 0, 3 * q[2]}};
+  Eigen::VectorXd tau(3), tau_without(3);
+  torques(with, q, q, q, tau);
+  torques(without, q, q, q, tau_without);
+  EXPECT_LE((tau - tau_without - added).norm(), 1e-12);
+  EXPECT_NEAR(kineticEnergy(with, q, q) - kineticEnergy(without, q, q), 0.5 * added.dot(q), 1e-12);
+  FastModel(with).torques(q.data(), q.data(), q.data(), tau.data());
+  EXPECT_LE((tau - tau_without - added).norm(), 1e-12);
+}
+
+TEST(Motors, AreRefusedByName) {
+  const Mechanism joints = mechanism(torso());
+  Eigen::MatrixXd M = Eigen::MatrixXd::Identity(3, 3);
+  EXPECT_THAT(errorOf(joints, motors(M.topRows(2))), HasSubstr("right_arm, waist, left_arm"));
+  EXPECT_THAT(errorOf(joints, motors(M, {"a", "b"})), HasSubstr("2 names"));
+  EXPECT_THAT(errorOf(joints, motors(M, {"a", "b", "a"})), HasSubstr("a"));
+  M(1, 2) = NAN;
+  EXPECT_THAT(errorOf(joints, motors(M)), HasSubstr("row of joint waist: expected finite"));
+  M.setOnes();
+  EXPECT_THAT(errorOf(joints, motors(M)), HasSubstr("full column rank"));
+}
+
+const char* const kPlugin = "<plugin>transmission_interface/";
+
+std::string end(const std::string& kind, int number, const std::string& name,
+                const std::string& content) {
+  return "<" + kind + " name='" + name + "' role='" + kind + std::to_string(number) + "'>" +
+         content + "</" + kind + ">";
+}
+
+std::string control(const std::string& content) {
+  return "<ros2_control name='arms' type='system'>" + content + "</ros2_control>";
+}
+
+std::string transmission(const std::string& plugin, const std::string& ends) {
+  return "<transmission name='wrist'>" + (kPlugin + plugin) + "</plugin>" + ends +
+         "</transmission>";
+}
+
+std::string reduction(double n, double offset = 0) {
+  return "<mechanical_reduction>" + std::to_string(n) + "</mechanical_reduction><offset>" +
+         std::to_string(offset) + "</offset>";
+}
+
+const std::string kPair = end("actuator", 1, "left_motor", reduction(50)) +
+                          end("actuator", 2, "right_motor", reduction(-40)) +
+                          end("joint", 1, "left_arm", reduction(2, 0.1)) +
+                          end("joint", 2, "right_arm", reduction(4, -0.3));
+
+Motors described(const std::string& more) {
+  const RobotDescription robot = robotFromUrdf(torso(kLimit, more));
+  return motorsFromRobot(robot, {"right_arm", "waist", "left_arm"});
+}
+
+// Formulas of the documentation of ros2_control's transmission_interface, at one motion of the motors.
+TEST(Transmissions, GiveMotors) {
+  const double a = 0.7, b = -1.1;
+  const Eigen::VectorXd q = Eigen::Vector3d(a, b, 5);  // the waist comes after the right arm
+  const Motors simple = described(control(transmission(
+      "SimpleTransmission",
+      end("actuator", 1, "motor", "") + end("joint", 1, "right_arm", reduction(-50, 0.2)))));
+  EXPECT_THAT(simple.names, ElementsAre("motor", "waist", "left_arm"));
+  EXPECT_LE((simple.M * q + simple.offset - Eigen::Vector3d(a / -50 + 0.2, b, 5)).norm(), 1e-15);
+
+  const Motors differential = described(control(transmission("DifferentialTransmission", kPair)));
+  EXPECT_THAT(differential.names, ElementsAre("left_motor", "right_motor", "waist"));
+  const double left = (a / 50 + b / -40) / (2 * 2) + 0.1,
+               right = (a / 50 - b / -40) / (2 * 4) - 0.3;
+  EXPECT_LE((differential.M * q + differential.offset - Eigen::Vector3d(right, 5, left)).norm(),
+            1e-15);
+
+  const Motors four_bar = described(control(transmission("FourBarLinkageTransmission", kPair)));
+  const double first = a / (2 * 50), second = (b / -40 - a / (2 * 50)) / 4;
+  EXPECT_LE(
+      (four_bar.M * q + four_bar.offset - Eigen::Vector3d(second - 0.3, 5, first + 0.1)).norm(),
+      1e-15);
+}
+
+TEST(Transmissions, AreRefusedWhereTheyAreAskedForOnly) {
+  const auto error = [](const std::string& more) {
+    try {
+      described(control(more));
+    } catch (const ModelError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const std::string simple = end("actuator", 1, "motor", "") + end("joint", 1, "waist", "");
+  EXPECT_EQ(error(transmission("SimpleTransmission", simple)), "");
+  EXPECT_THAT(error(transmission("SpringTransmission", simple)),
+              AllOf(HasSubstr("transmission wrist: <plugin>"), HasSubstr("SpringTransmission")));
+  EXPECT_THAT(error(transmission("SimpleTransmission", end("joint", 1, "waist", ""))),
+              HasSubstr("<actuator>: expected 1, got 0"));
+  EXPECT_THAT(error(transmission("DifferentialTransmission", simple)),
+              HasSubstr("<joint>: expected 2, got 1"));
+  EXPECT_THAT(error(transmission("SimpleTransmission", end("actuator", 1, "motor", "") +
+                                                           end("joint", 1, "waist", reduction(0)))),
+              HasSubstr("<mechanical_reduction>: expected a number other than 0"));
+  EXPECT_THAT(
+      error(transmission("FourBarLinkageTransmission",
+                         end("actuator", 1, "a", "") + end("actuator", 2, "b", "") +
+                             end("joint", 2, "waist", "") + end("joint", 1, "left_arm", ""))),
+      AllOf(HasSubstr("<joint> role"), HasSubstr("joint1")));
+  EXPECT_THAT(error(transmission("SimpleTransmission", simple) +
+                    transmission("SimpleTransmission", simple)),
+              HasSubstr("joint waist: expected one of no other transmission"));
+  const std::string pair = transmission("DifferentialTransmission", kPair);
+  EXPECT_EQ(error(pair), "");
+  const RobotDescription robot = robotFromUrdf(torso(kLimit, control(pair)));
+  EXPECT_THROW(motorsFromRobot(robot, {"waist", "left_arm"}), ModelError);  // right_arm is held
+}
+
+TEST(Mechanism, HasNoFollowerWhereRos2ControlSaysSo) {
+  const std::string follows = mimic("left_arm", -2, 0.5);
+  const auto names = [&](const std::string& joint) {
+    return mechanism(torso(follows, control(joint))).coordinates.jointNames();
+  };
+  EXPECT_THAT(names("<joint name='right_arm' mimic='true'/>"), ElementsAre("waist", "left_arm"));
+  EXPECT_THAT(names("<joint name='right_arm'/>"), ElementsAre("waist", "left_arm"));
+  EXPECT_THAT(names("<joint name='right_arm' mimic='False'/>"),
+              ElementsAre("right_arm", "waist", "left_arm"));
+  EXPECT_THAT(robotFromUrdf(torso(follows, control("<joint name='waist' mimic='no'/>"))).warnings,
+              ::testing::Contains(HasSubstr("expected true or false, got 'no'")));
 }
 
 TEST(Mechanism, HasDefiniteInertiaOnlyWhereEachBranchHas) {

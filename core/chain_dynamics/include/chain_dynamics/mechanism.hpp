@@ -17,6 +17,8 @@
 ///
 /// and likewise every other term of the dynamics. Rotor inertia stands in the branches, as mass does.
 /// Friction, limits and types are of coordinates.
+///
+/// Coordinates may be motors that move several joints: withMotors().
 
 #pragma once
 
@@ -26,6 +28,7 @@
 #include <vector>
 
 #include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/owned.hpp"
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/urdf.hpp"
 
@@ -95,7 +98,7 @@ void checkMechanism(const Mechanism& mechanism);
 /// Joints between root and tips move, each follows its `<mimic>`; all others are held or lumped as in
 /// chainFromRobot(). Coordinates are the joints that mimic no other, in the order of the description.
 /// Limits of a joint that mimics restrict its coordinate. One tip without a joint that mimics is the
-/// chain of chainFromRobot(), without branches.
+/// chain of chainFromRobot(), without branches unless `branches_of_chains` asks for one.
 ///
 /// @param options  `tip` isn't read.
 /// @param tips     links, the first of which is the tip where only one is asked for. Empty: the tip of
@@ -106,7 +109,36 @@ void checkMechanism(const Mechanism& mechanism);
 ///     that no joint moves, a `<mimic>` that follows itself or a joint that isn't between root and tips.
 /// Threads: safe.
 Mechanism mechanismFromRobot(const RobotDescription& robot, const UrdfOptions& options,
-                             const std::vector<std::string>& tips);
+                             const std::vector<std::string>& tips, bool branches_of_chains = false);
+
+/// Motors that move the joints which were coordinates: `q = M q_motors + offset`.
+struct Motors {
+  OwnedMatrix M;       ///< joints x motors, of full column rank; rad per rad (prismatic m)
+  OwnedVector offset;  ///< of each joint; rad (prismatic m); empty: zero
+  /// Of each motor. Empty: a motor that is a joint itself (a row of M with only a 1 in its column) has the
+  /// joint's name, others are `motor_1`, ..., by their column.
+  std::vector<std::string> names = {};
+  std::vector<double> rotor_inertia = {};  ///< of each motor; kg m^2 (prismatic kg); empty: none
+};
+
+/// The mechanism with motors for coordinates: torques and H are those of motors.
+///
+/// A motor that is a joint itself has its type and limits. Limits, damping and friction of a joint that one
+/// motor moves are that motor's, as those of joints that mimic; the other joints' aren't used. A motor's
+/// effort is limited where it moves one joint alone.
+///
+/// @param mechanism  with branches.
+/// @throws ModelError  M or names of another size, numbers that aren't finite, a motor without a motion of
+///     its own.
+Mechanism withMotors(const Mechanism& mechanism, const Motors& motors);
+
+/// The motors of a description: those of its transmissions [RobotDescription::Transmission], and each other
+/// joint itself; in the order of the joints.
+///
+/// @param joints  names of the coordinates.
+/// @throws ModelError  a transmission of these joints that can't be computed, or that has other joints, too;
+///     a joint of two transmissions.
+Motors motorsFromRobot(const RobotDescription& robot, const std::vector<std::string>& joints);
 
 /// The tips that a text names: one, several with commas between them, "*"; none if it is empty.
 std::vector<std::string> tipsNamed(const RobotDescription& robot, const std::string& text);

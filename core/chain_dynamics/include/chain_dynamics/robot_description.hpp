@@ -11,8 +11,9 @@
 /// what isn't understood is a warning. What URDF allows to be left out has URDF's meaning: no
 /// `<origin>` is the identity, no `<axis>` is x, no `<inertial>` is no mass.
 ///
-/// Read are the links and joints of URDF 1.0 to 1.2 [https://wiki.ros.org/urdf/XML], and the rotor
-/// inertia of `<transmission>`. As in urdfdom, `quat_xyzw` counts where the URDF states version 1.1
+/// Read are the links and joints of URDF 1.0 to 1.2 [https://wiki.ros.org/urdf/XML], the rotor
+/// inertia of `<transmission>`, and of `<ros2_control>` the transmissions and the joints with
+/// `mimic="false"`, whose `<mimic>` isn't used. As in urdfdom, `quat_xyzw` counts where the URDF states version 1.1
 /// or later, limits of acceleration, deceleration and jerk from 1.2 on; elsewhere they are ignored,
 /// and a warning says so. Known, and left to others: visual
 /// and collision shapes, materials, sensors, calibration, safety controllers, extensions of
@@ -92,10 +93,22 @@ struct RobotDescription {
     std::optional<Mimic> mimic;
   };
 
+  /// A `<transmission>` of `<ros2_control>`: `q_joints = M q_motors + offset`.
+  struct Transmission {
+    std::string name;
+    int line = 0;
+    std::vector<std::string> joints;
+    std::vector<std::string> motors;  ///< `<actuator>`s, as many as joints
+    std::vector<double> M;            ///< row by row
+    std::vector<double> offset;       ///< of each joint; rad; prismatic m
+    std::string fault;                ///< empty; or why motors, M and offset can't be used
+  };
+
   std::string name;
   std::vector<Link> links;    ///< in the order of the text
   std::vector<Joint> joints;  ///< in the order of the text
-  std::size_t root = 0;       ///< link
+  std::vector<Transmission> transmissions;
+  std::size_t root = 0;  ///< link
 
   /// What isn't understood or hardly meant, a sentence each: `URDF:12: joint elbow: ...`.
   std::vector<std::string> warnings;
