@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -150,6 +151,29 @@ Branch behind(const Branch& branch, const Motors& motors) {
   return result;
 }
 
+/// The transmission that moves a joint, if any.
+const RobotDescription::Transmission* transmissionOf(const RobotDescription& robot,
+                                                     const std::vector<std::string>& joints,
+                                                     const std::string& joint) {
+  const RobotDescription::Transmission* found = nullptr;
+  for (const RobotDescription::Transmission& next : robot.transmissions) {
+    if (std::count(next.joints.begin(), next.joints.end(), joint) == 0) continue;
+    const std::string place = "URDF:" + std::to_string(next.line) + ": transmission " + next.name;
+    if (!next.fault.empty()) throw ModelError(next.fault);
+    if (found != nullptr) {
+      throw ModelError(place, "joint " + joint, "one of no other transmission",
+                       "one of transmission " + found->name, "");
+    }
+    for (const std::string& other : next.joints) {
+      if (std::count(joints.begin(), joints.end(), other) > 0) continue;
+      throw ModelError(place, "joint " + other, "one between root and tips that moves by itself",
+                       "one that is held or follows others", "hold joint " + joint + ", too");
+    }
+    found = &next;
+  }
+  return found;
+}
+
 }  // namespace
 
 Mechanism withMotors(const Mechanism& mechanism, const Motors& motors) {
@@ -164,52 +188,32 @@ Mechanism withMotors(const Mechanism& mechanism, const Motors& motors) {
 
 Motors motorsFromRobot(const RobotDescription& robot, const std::vector<std::string>& joints) {
   const auto n = static_cast<Index>(joints.size());
-  Motors motors;
-  motors.offset = Eigen::VectorXd::Zero(n);
-  Eigen::MatrixXd M(n, 0);
-  const auto addColumn = [&](const std::string& name) {
-    M.conservativeResize(n, M.cols() + 1);
-    M.col(M.cols() - 1).setZero();
-    motors.names.push_back(name);
+  const auto row_of = [&joints](const std::string& joint) {
+    return static_cast<Index>(std::find(joints.begin(), joints.end(), joint) - joints.begin());
   };
-  std::vector<const RobotDescription::Transmission*> taken;
-  for (Index j = 0; j < n; ++j) {
-    const std::string& joint = joints[static_cast<std::size_t>(j)];
-    const RobotDescription::Transmission* found = nullptr;
-    for (const RobotDescription::Transmission& next : robot.transmissions) {
-      if (std::count(next.joints.begin(), next.joints.end(), joint) == 0) continue;
-      const std::string place = "URDF:" + std::to_string(next.line) + ": transmission " + next.name;
-      if (!next.fault.empty()) throw ModelError(next.fault);
-      if (found != nullptr) {
-        throw ModelError(place, "joint " + joint, "one of no other transmission",
-                         "one of transmission " + found->name, "");
-      }
-      for (const std::string& other : next.joints) {
-        if (std::count(joints.begin(), joints.end(), other) > 0) continue;
-        throw ModelError(place, "joint " + other, "one between root and tips that moves by itself",
-                         "one that is held or follows others", "hold joint " + joint + ", too");
-      }
-      found = &next;
-    }
+  Motors motors;
+  motors.M = Eigen::MatrixXd::Zero(n, n);
+  motors.offset = Eigen::VectorXd::Zero(n);
+  std::set<const RobotDescription::Transmission*> taken;
+  Index column = 0;
+  for (const std::string& joint : joints) {
+    const RobotDescription::Transmission* const found = transmissionOf(robot, joints, joint);
     if (found == nullptr) {
-      addColumn(joint);
-      M(j, M.cols() - 1) = 1;
-      continue;
-    }
-    if (std::count(taken.begin(), taken.end(), found) > 0) continue;
-    taken.push_back(found);
-    const auto first = M.cols();
-    const std::size_t count = found->joints.size();
-    for (const std::string& motor : found->motors) addColumn(motor);
-    for (std::size_t row = 0; row < count; ++row) {
-      const Index of = std::find(joints.begin(), joints.end(), found->joints[row]) - joints.begin();
-      motors.offset[of] = found->offset[row];
-      for (std::size_t k = 0; k < count; ++k) {
-        M(of, first + static_cast<Index>(k)) = found->M[row * count + k];
+      motors.names.push_back(joint);
+      motors.M(row_of(joint), column++) = 1;
+    } else if (taken.insert(found).second) {
+      motors.names.insert(motors.names.end(), found->motors.begin(), found->motors.end());
+      const auto count = static_cast<Index>(found->joints.size());
+      for (Index i = 0; i < count; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const Index row = row_of(found->joints[at]);
+        motors.offset[row] = found->offset[at];
+        motors.M.row(row).segment(column, count) =
+            Eigen::Map<const Eigen::RowVectorXd>(&found->M[at * found->joints.size()], count);
       }
+      column += count;
     }
   }
-  motors.M = M;
   return motors;
 }
 

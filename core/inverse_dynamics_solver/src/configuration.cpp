@@ -17,6 +17,7 @@
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/gravity.hpp"
 #include "chain_dynamics/mechanism.hpp"
+#include "chain_dynamics/model.hpp"
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
 #include "chain_dynamics/urdf.hpp"
@@ -106,16 +107,23 @@ class RotorInertia {
         use_stated_(configuration.get<bool>(kRotorInertia).value_or(false)) {}
 
   double of(const chain_dynamics::RobotDescription::Joint& joint) {
-    const std::string name = kRotorInertia + "." + joint.name;
-    if (const auto given = configuration_.get<double>(name)) {
-      if (*given >= 0.0 && std::isfinite(*given)) return *given;
-      configuration_.refuse(name, "a finite number >= 0 [kg m^2; prismatic kg]",
-                            std::to_string(*given),
-                            "give the inertia of the rotor times the square of the gear ratio");
+    if (motors.count(joint.name) == 0) {
+      if (const auto given = byParameter(joint.name)) return *given;
     }
     if (joint.rotor_inertia > 0.0) stated_.push_back(joint.name);
     return use_stated_ ? joint.rotor_inertia : 0.0;
   }
+
+  std::optional<double> byParameter(const std::string& joint) const {
+    const std::string name = kRotorInertia + "." + joint;
+    const auto given = configuration_.get<double>(name);
+    if (!given || (*given >= 0.0 && std::isfinite(*given))) return given;
+    configuration_.refuse(name, "a finite number >= 0 [kg m^2; prismatic kg]",
+                          std::to_string(*given),
+                          "give the inertia of the rotor times the square of the gear ratio");
+  }
+
+  std::set<std::string> motors;  ///< names that aren't of joints
 
   /// The chain, with a warning if what the description states isn't used, or if it states nothing.
   chain_dynamics::Chain warnedOf(const chain_dynamics::Chain& chain) const {
@@ -192,6 +200,80 @@ struct Description {
   std::vector<std::string> tips;
 };
 
+/// The motors that the parameter `motors` asks for, if any.
+class MotorParameters {
+ public:
+  explicit MotorParameters(const Configuration& configuration)
+      : configuration_(configuration),
+        names_(configuration.get<std::vector<std::string>>("motor_names")
+                   .value_or(std::vector<std::string>())) {
+    const auto value = configuration.parameters.find(configuration.fullName("motors"));
+    described_ = value && *value == ParameterValue(std::string("description"));
+    if (value && !described_ && *value != ParameterValue(std::string())) {
+      numbers_ = configuration.require<std::vector<double>>("motors");
+    }
+    if (!names_.empty() && numbers_.empty()) {
+      configuration.refuse("motor_names", "none without a matrix 'motors'",
+                           chain_dynamics::joined(names_), "give the matrix, or no names");
+    }
+  }
+
+  bool given() const { return described_ || !numbers_.empty(); }
+
+  /// Names that are motors' alone.
+  std::set<std::string> names(const chain_dynamics::RobotDescription& robot) const {
+    std::set<std::string> names(names_.begin(), names_.end());
+    for (const auto& transmission : robot.transmissions) {
+      if (described_) names.insert(transmission.motors.begin(), transmission.motors.end());
+    }
+    return names;
+  }
+
+  chain_dynamics::Motors of(const chain_dynamics::RobotDescription& robot,
+                            const chain_dynamics::Chain& coordinates) const {
+    const std::vector<std::string> joints = coordinates.jointNames();
+    if (described_) return motorsFromRobot(robot, joints);
+    const std::size_t n = joints.size(), m = numbers_.size() / n;
+    if (m * n != numbers_.size() || m > n || (!names_.empty() && names_.size() != m)) {
+      configuration_.refuse(
+          "motors",
+          "numbers of M in q = M q_motors, row by row: for each of the " + std::to_string(n) +
+              " joints " + chain_dynamics::joined(joints) + " one per motor, of up to " +
+              std::to_string(n) + " motors" +
+              (names_.empty()
+                   ? ""
+                   : ", which are " + std::to_string(names_.size()) + " by 'motor_names'"),
+          std::to_string(numbers_.size()) + " numbers", "state a row for each joint");
+    }
+    chain_dynamics::Motors motors;
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    motors.M = Eigen::Map<const Rows>(numbers_.data(), static_cast<Eigen::Index>(n),
+                                      static_cast<Eigen::Index>(m));
+    motors.names = names_;
+    return motors;
+  }
+
+ private:
+  const Configuration& configuration_;
+  std::vector<std::string> names_;
+  std::vector<double> numbers_;
+  bool described_ = false;
+};
+
+/// The mechanism behind its motors, which have rotor inertia by the parameters of their names.
+chain_dynamics::Mechanism driven(const chain_dynamics::Mechanism& mechanism,
+                                 const MotorParameters& parameters,
+                                 const Description& description) {
+  chain_dynamics::Motors motors = parameters.of(description.robot, mechanism.coordinates);
+  for (const std::string& name : withMotors(mechanism, motors).coordinates.jointNames()) {
+    const bool is_joint =
+        description.robot.jointIndex(name) != chain_dynamics::RobotDescription::kNone;
+    const bool is_read = is_joint && description.rotors.motors.count(name) == 0;
+    motors.rotor_inertia.push_back(is_read ? 0 : description.rotors.byParameter(name).value_or(0));
+  }
+  return withMotors(mechanism, motors);
+}
+
 /// What `take` makes of the description.
 template <class Take>
 auto fromDescription(const Configuration& configuration, const Take& take) {
@@ -223,11 +305,50 @@ chain_dynamics::Chain chainFromDescription(const Configuration& configuration) {
 }
 
 chain_dynamics::Mechanism mechanismFromDescription(const Configuration& configuration) {
-  return fromDescription(configuration, [](Description& description) {
-    auto mechanism = mechanismFromRobot(description.robot, description.options, description.tips);
+  return fromDescription(configuration, [&](Description& description) {
+    const MotorParameters parameters(configuration);
+    description.rotors.motors = parameters.names(description.robot);
+    auto mechanism = mechanismFromRobot(description.robot, description.options, description.tips,
+                                        parameters.given());
+    if (parameters.given()) mechanism = driven(mechanism, parameters, description);
     mechanism.coordinates = description.rotors.warnedOf(mechanism.coordinates);
     return mechanism;
   });
+}
+
+void setSprings(const Configuration& configuration, chain_dynamics::Model& model) {
+  const Eigen::Index n = model.chain.jointCount();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const std::string spring =
+        "springs." + model.chain.joints()[static_cast<std::size_t>(j)].name + ".";
+    const auto stiffness = configuration.get<double>(spring + "stiffness");
+    const auto rest = configuration.get<double>(spring + "rest");
+    if (!stiffness && !rest) continue;
+    if (!stiffness) {
+      configuration.refuse(spring + "rest", "none without a stiffness", std::to_string(*rest),
+                           "state '" + configuration.fullName(spring) + "stiffness'");
+    }
+    if (model.stiffness.size() == 0) model.rest = model.stiffness = Eigen::VectorXd::Zero(n);
+    model.stiffness[j] = *stiffness;
+    model.rest[j] = rest.value_or(0.0);
+    try {
+      checkModel(model);
+    } catch (const chain_dynamics::ModelError& e) {
+      throw InvalidParameterValueException("parameter '" + configuration.fullName(spring) +
+                                           "stiffness': " + e.what());
+    }
+  }
+}
+
+void refuseMotorsAndSprings(const Configuration& configuration) {
+  for (const std::string& name : configuration.parameters.names()) {
+    const bool is_motors = name == configuration.fullName("motors");
+    if (!is_motors && name.rfind(configuration.fullName("springs."), 0) != 0) continue;
+    throw InvalidParameterValueException("parameter '" + name + "'", "wrong value",
+                                         "none, as the solver computes chains without " +
+                                             std::string(is_motors ? "motors" : "springs"),
+                                         "one", "take rigid_body_inverse_dynamics_solver");
+  }
 }
 
 DescriptionFriction descriptionFriction(const Configuration& configuration,

@@ -24,6 +24,7 @@ constexpr double kNoLoad = 0.0;
 
 auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
   // Everything that can fail comes first.
+  refuseMotorsAndSprings(configuration);
   auto bare = std::make_unique<const chain_dynamics::Model>(chainFromDescription(configuration));
   const chain_dynamics::Chain& chain = bare->chain;
   const std::size_t max_threads = readMaxThreads(configuration);

@@ -18,7 +18,7 @@ using Names = std::vector<std::string>;
 
 /// Of a parameter `<prefix><joint>`, the prefix; of any other, nothing.
 std::string prefixOf(const std::string& name) {
-  for (const char* const prefix : {"locked_joints.", "rotor_inertia."}) {
+  for (const char* const prefix : {"locked_joints.", "rotor_inertia.", "springs."}) {
     if (name.rfind(prefix, 0) == 0) return prefix;
   }
   return "";

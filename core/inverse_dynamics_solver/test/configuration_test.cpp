@@ -191,6 +191,95 @@ TEST(ChainFromDescription, RefusesSeveralTipsThatAMechanismTakes) {
   EXPECT_EQ(chainFromDescription(one).jointNames(), Names{"shoulder"});
 }
 
+using Doubles = std::vector<double>;
+using Strings = std::vector<std::string>;
+
+chain_dynamics::Mechanism mechanism(const std::map<std::string, ParameterValue>& values) {
+  return mechanismFromDescription(readConfiguration(values, "", kArm));
+}
+
+TEST(Motors, AreCoordinatesByParameter) {
+  const auto names = [](const chain_dynamics::Mechanism& robot) {
+    return robot.coordinates.jointNames();
+  };
+  // of a chain, and of a tree
+  const auto geared = mechanism({{"tip", std::string("tool")}, {"motors", Doubles{-0.01}}});
+  EXPECT_EQ(names(geared), Strings{"motor_1"});
+  ASSERT_EQ(geared.branches.size(), 1U);
+  EXPECT_EQ(geared.branches[0].tip, "tool");
+  EXPECT_EQ(geared.branches[0].S[0].factor, -0.01);
+  const std::map<std::string, ParameterValue> both = {{"tip", std::string("*")},
+                                                      {"motors", Doubles{1, 0.5, 0, 2}},
+                                                      {"rotor_inertia.b", 0.3},
+                                                      {"motor_names", Strings{"a", "b"}},
+                                                      {"rotor_inertia.shoulder", 0.2}};
+  const auto shared = mechanism(both);
+  EXPECT_EQ(names(shared), (Strings{"a", "b"}));
+  EXPECT_EQ(shared.motor_inertia, (std::vector<double>{0, 0.3}));
+  EXPECT_EQ(shared.branches[0].chain.joints()[0].rotor_inertia, 0.2);
+  // a name that is of a motor isn't that of a joint
+  auto renamed = both;
+  renamed["motor_names"] = Strings{"shoulder", "b"};
+  EXPECT_EQ(mechanism(renamed).motor_inertia, (std::vector<double>{0.2, 0.3}));
+  EXPECT_EQ(mechanism(renamed).branches[0].chain.joints()[0].rotor_inertia, 0);
+}
+
+TEST(Motors, OfTheDescriptionAreThoseOfItsTransmissions) {
+  std::string urdf = kArm;
+  urdf.insert(urdf.find("</robot>"),
+              "<ros2_control name='arm' type='system'><transmission name='gear'>"
+              "<plugin>transmission_interface/SimpleTransmission</plugin>"
+              "<actuator name='motor' role='actuator1'/><joint name='shoulder' role='joint1'>"
+              "<mechanical_reduction>50</mechanical_reduction></joint></transmission>"
+              "</ros2_control>");
+  const auto robot =
+      mechanismFromDescription(readConfiguration({{"tip", std::string("*")},
+                                                  {"motors", std::string("description")},
+                                                  {"rotor_inertia.motor", 0.1}},
+                                                 "", urdf));
+  EXPECT_EQ(robot.coordinates.jointNames(), (Strings{"motor", "slide"}));
+  EXPECT_EQ(robot.motor_inertia, (std::vector<double>{0.1, 0}));
+  EXPECT_EQ(robot.branches[0].S[0].factor, 1.0 / 50);
+}
+
+TEST(Motors, AreRefusedByName) {
+  const auto error = [](std::map<std::string, ParameterValue> values) {
+    values["tip"] = std::string("*");
+    return errorOf<InvalidParameterValueException>([&] { mechanism(values); });
+  };
+  EXPECT_NE(error({{"motors", Doubles{1, 0, 1}}}).find("2 joints shoulder, slide one per motor"),
+            std::string::npos);
+  EXPECT_NE(error({{"motors", Doubles{1, 0, 0, 1}}, {"motor_names", Strings{"a"}}}).find("1 by"),
+            std::string::npos);
+  EXPECT_NE(error({{"motor_names", Strings{"a"}}}).find("'motor_names'"), std::string::npos);
+  EXPECT_NE(error({{"motors", std::string("transmissions")}}).find("'motors'"), std::string::npos);
+  errorOf<InvalidRobotDescriptionException>([&] {
+    mechanism({{"tip", std::string("*")}, {"motors", Doubles{1, 1, 2, 2}}});  // without full rank
+  });
+}
+
+TEST(Springs, AreSetByParameterInPlaceOfTheModels) {
+  chain_dynamics::Model model(mechanism({{"tip", std::string("*")}}));
+  const auto set = [&](const std::map<std::string, ParameterValue>& values) {
+    setSprings(readConfiguration(values, "", kArm), model);
+  };
+  set({});
+  EXPECT_EQ(model.stiffness.size(), 0);
+  set({{"springs.slide.stiffness", 30.0}, {"springs.slide.rest", 0.2}});
+  EXPECT_EQ(model.stiffness[1], 30);
+  EXPECT_EQ(model.rest[1], 0.2);
+  set({{"springs.slide.stiffness", 40}});
+  EXPECT_EQ(model.stiffness[0], 0);
+  EXPECT_EQ(model.stiffness[1], 40);
+  EXPECT_EQ(model.rest[1], 0);
+  for (const std::map<std::string, ParameterValue>& wrong :
+       {std::map<std::string, ParameterValue>{{"springs.slide.rest", 1.0}},
+        {{"springs.slide.stiffness", std::nan("")}}}) {
+    EXPECT_NE(errorOf<InvalidParameterValueException>([&] { set(wrong); }).find("springs.slide."),
+              std::string::npos);
+  }
+}
+
 TEST(ChainFromDescription, RefusesWhatIsNoRobot) {
   const auto error = [](Parameters parameters, const std::string& text) {
     return errorOf<InvalidRobotDescriptionException>(

@@ -17,10 +17,13 @@
 #include <vector>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
+#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace kdl_inverse_dynamics_solver::kdl_inverse_dynamics_solver_test {
 
 using inverse_dynamics_solver::Parameters;
+using inverse_dynamics_solver::conformance::errorOf;
 
 std::string obliqueArm() {
   using namespace inverse_dynamics_solver::conformance;
@@ -91,6 +94,17 @@ TEST(InverseDynamicsSolverKDL, CalculatesRightWithMoreThreadsThanWorkspaces) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(different, 0);
+}
+
+TEST(InverseDynamicsSolverKDL, RefusesMotorsAndSpringsByName) {
+  for (const std::string name : {"ids.motors", "ids.springs.spin.stiffness"}) {
+    InverseDynamicsSolverKDL solver;
+    const Parameters parameters = {{"ids.tip", "tool"}, {name, 1.0}};
+    const std::string error = errorOf<inverse_dynamics_solver::InvalidParameterValueException>(
+        [&] { solver.initialize(parameters, "ids", obliqueArm()); });
+    EXPECT_NE(error.find("'" + name + "'"), std::string::npos) << error;
+    EXPECT_NE(error.find("rigid_body_inverse_dynamics_solver"), std::string::npos) << error;
+  }
 }
 
 }  // namespace kdl_inverse_dynamics_solver::kdl_inverse_dynamics_solver_test

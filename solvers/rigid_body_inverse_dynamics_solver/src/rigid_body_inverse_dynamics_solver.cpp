@@ -61,7 +61,8 @@ chain_dynamics::Mechanism robotOfDescription(const Configuration& configuration)
 
 /// Warnings of parameters that have a meaning for robot descriptions only.
 Sentences unusedParameters(const Configuration& configuration) {
-  std::vector<std::string> names = {"allow_massless", "urdf_friction", "rotor_inertia"};
+  std::vector<std::string> names = {"allow_massless", "urdf_friction", "rotor_inertia", "motors",
+                                    "motor_names"};
   std::vector<const char*> prefixes = {"rotor_inertia."};
   if (configuration.robot_description.empty()) {  // else: differences()
     names.insert(names.end(), {"root", "tip", "attached"});
@@ -226,6 +227,7 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
                                           const Configuration& configuration, Sentences warnings)
     -> JointInfo {
   requireFewEnough(model.chain);
+  setSprings(configuration, model);
   const bool inertia_is_physical = model.inertiaIsPhysical();
   JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical),
                  model.chain.jointTypes()};

@@ -63,6 +63,36 @@ struct TwoArmsWithFriction : TwoArms {
   }
 };
 
+struct PandaWithSprings : PandaDescription {
+  static ParameterMap parameters() {
+    ParameterMap values = PandaDescription::parameters();
+    values["springs.fer_joint2.stiffness"] = 12.0;
+    values["springs.fer_joint4.stiffness"] = 3.0;
+    values["springs.fer_joint4.rest"] = -1.5;
+    return values;
+  }
+};
+
+/// Two motors turn left elbow and hand together; others move a joint alone, or two in proportion.
+struct TwoArmsBehindMotors : TwoArms {
+  static ParameterMap parameters() {
+    return {{"tip", std::string("*")},
+            {"motors", std::vector<double>{1, 0,  0,   0, 0,  0, 0,   0,  //
+                                           0, -1, 0,   0, 0,  0, 0,   0,  //
+                                           0, 0,  0.5, 0, 0,  0, 0,   0,  //
+                                           0, 0,  0,   1, 1,  0, 0,   0,  //
+                                           0, 0,  0,   1, -1, 0, 0,   0,  //
+                                           0, 0,  0,   0, 0,  1, 0,   0,  //
+                                           0, 0,  0,   0, 0,  0, 1,   0,  //
+                                           0, 0,  0,   0, 0,  0, 0.3, 0,  //
+                                           0, 0,  0,   0, 0,  0, 0,   1}},
+            {"rotor_inertia.motor_4", 0.2},
+            {"springs.motor_4.stiffness", 5.0},
+            {"springs.lift_joint.stiffness", 40.0},
+            {"springs.lift_joint.rest", 0.1}};
+  }
+};
+
 struct FeasiblePandaModel : RigidBody {
   static ParameterMap parameters() { return {{"model", std::string("franka_gaz2019_feasible")}}; }
   static std::optional<chain_dynamics::Model> model() { return modelOf("franka_gaz2019_feasible"); }
@@ -131,6 +161,8 @@ INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaDescription, PandaDescription);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaDescriptionWithFriction, PandaDescriptionWithFriction);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(TwoArms, TwoArms);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(TwoArmsWithFriction, TwoArmsWithFriction);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaWithSprings, PandaWithSprings);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(TwoArmsBehindMotors, TwoArmsBehindMotors);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(FeasiblePandaModel, FeasiblePandaModel);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(LoadedPandaModel, LoadedPandaModel);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(IdentifiedUr10Model, IdentifiedUr10Model);

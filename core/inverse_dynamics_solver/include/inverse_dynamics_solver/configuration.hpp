@@ -24,6 +24,7 @@
 #include "chain_dynamics/friction.hpp"
 #include "chain_dynamics/friction_laws/viscous_coulomb_offset.hpp"
 #include "chain_dynamics/mechanism.hpp"
+#include "chain_dynamics/model.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
 
 namespace inverse_dynamics_solver {
@@ -41,14 +42,20 @@ inline namespace v2 {
 /// | locked_joints.<joint>         | double    | 0                                           |
 /// | rotor_inertia                 | bool      | false: `<transmission>` isn't used          |
 /// | rotor_inertia.<joint>         | double    | none; >= 0, reflected to the joint [kg m^2] |
+/// | motors                        | doubles   | none: q = M q_motors, a row per joint       |
+/// | motors: "description"         | string    | those of ros2_control's transmissions       |
+/// | motor_names                   | strings   | those of joints, or motor_1, ...            |
+/// | springs.<joint>.stiffness     | double    | none [N m/rad; prismatic N/m]               |
+/// | springs.<joint>.rest          | double    | 0: position of the spring at rest           |
 /// | allow_massless                | bool      | false                                       |
 /// | friction                      | bool      | true                                        |
 /// | urdf_friction                 | bool      | false: `<dynamics>` of the URDF isn't used  |
 /// | batch_threads                 | integer   | 1: the library starts no thread             |
 // clang-format on
 ///
-/// Several tips, as a list or a text with commas, or "*" for all leaves, are for solvers of trees
-/// [chain_dynamics/mechanism.hpp].
+/// Several tips, as a list or a text with commas, or "*" for all leaves, `motors` and `springs` are for
+/// solvers of trees [chain_dynamics/mechanism.hpp]. With `motors`, these are the joints of the solver, and of
+/// `rotor_inertia` and `springs`.
 struct Configuration {
   /// URDF text; empty if there is none.
   std::string robot_description;
@@ -145,8 +152,18 @@ Configuration readConfiguration(const Parameters& parameters, const std::string&
 /// be computed with.
 chain_dynamics::Chain chainFromDescription(const Configuration& configuration);
 
-/// The same between root and all tips: a tree, or a chain, which has no branches.
+/// The same between root and all tips, behind its motors: a tree, or a chain, which has no branches.
+///
+/// Throws InvalidParameterValueException: motors that aren't a matrix of a row for each joint.
 chain_dynamics::Mechanism mechanismFromDescription(const Configuration& configuration);
+
+/// Gives a robot the springs that `springs` states, in place of its own.
+///
+/// Throws InvalidParameterValueException: a spring without stiffness, or of a joint that can't have one.
+void setSprings(const Configuration& configuration, chain_dynamics::Model& model);
+
+/// Throws InvalidParameterValueException where `motors` or `springs` are stated: for solvers of chains.
+void refuseMotorsAndSprings(const Configuration& configuration);
 
 /// Friction that a robot description states.
 struct DescriptionFriction {

@@ -30,7 +30,8 @@ class Energies : public Capability {
   /// `T(q, qd) = 1/2 qd^T H(q) qd` [J]; where not inertiaIsPhysical() it may be negative.
   double getKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const;
 
-  /// `U(q)` [J], of which g is the gradient; zero where all masses are at the root's origin.
+  /// `U(q)` [J], of which g is the gradient; zero where all masses are at the root's origin and all springs
+  /// at rest.
   double getPotentialEnergy(const ConstVectorRef& q) const;
 
   /// @name Many states at once

@@ -123,7 +123,7 @@ class InverseDynamicsSolver {
     getFrictionVector(q, qd, f);
     return f;
   }
-  /// Gravity torques `g(q)`: what holds the robot still.
+  /// Gravity torques `g(q)`, those of springs included: what holds the robot still.
   Eigen::VectorXd getGravityVector(const ConstVectorRef& q) const {
     Eigen::VectorXd g = vector("getGravityVector");
     getGravityVector(q, g);

@@ -352,8 +352,8 @@ inline Eigen::VectorXd parametersOf(const chain_dynamics::Model& model) {
   return p;
 }
 
-/// The torques of a model from a regressor: `(Y - Y_g) p + Y_g p_g + rotor_inertia qdd`, where p is
-/// that of the row, and p_g that of gravity, for models in which these differ.
+/// The torques of a model from a regressor: `(Y - Y_g) p + Y_g p_g + rotor_inertia qdd`, and those of springs,
+/// where p is that of the row, and p_g that of gravity, for models in which these differ.
 inline Eigen::VectorXd torquesOf(const chain_dynamics::Model& model, const Regressor& bodies,
                                  const State& x) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(x.q.size());
@@ -366,6 +366,7 @@ inline Eigen::VectorXd torquesOf(const chain_dynamics::Model& model, const Regre
                                   ? parametersOf(model)
                                   : parametersOf(model.row_parameters[row]);
     tau[i] = Y.row(i).dot(p) + model.chain.joints()[row].rotor_inertia * x.qdd[i];
+    if (model.stiffness.size() > 0) tau[i] += model.stiffness[i] * (x.q[i] - model.rest[i]);
     if (model.gravity_parameters.empty()) continue;
     tau[i] += Y_g.row(i).dot(parametersOf(model.gravity_parameters) - p);
   }
@@ -379,8 +380,10 @@ TEST_P(SolverConformance, RegressorTimesParametersAreTheTorques) {
   std::optional<chain_dynamics::Model> model = GetParam().model();
   if (!model) {
     ASSERT_FALSE(GetParam().robotDescription().empty()) << "the traits must state the model()";
-    model.emplace(mechanismFromDescription(
-        readConfiguration(GetParam().parameters(), "", GetParam().robotDescription())));
+    const Configuration configuration =
+        readConfiguration(GetParam().parameters(), "", GetParam().robotDescription());
+    model.emplace(mechanismFromDescription(configuration));
+    setSprings(configuration, *model);
   }
   for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
