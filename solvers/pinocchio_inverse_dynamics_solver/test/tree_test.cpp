@@ -159,25 +159,59 @@ void expectEqual(const MatrixXd& ours, const MatrixXd& theirs, const char* what)
 class Pair {
  public:
   Pair(const RobotDescription& robot, const std::vector<std::string>& tips,
-       const std::map<std::string, double>& rotors, Random& random)
-      : model(mechanismOf(robot, tips, rotors)),
-        peer(robot, model.chain.jointNames(), rotors),
-        q(random.vector(n(), 3)),
-        qd(random.vector(n(), 2)),
-        qdd(random.vector(n(), 5)) {}
+       const std::map<std::string, double>& rotors, Random& random, bool with_motors = false)
+      : model(mechanismOf(robot, tips, rotors, with_motors)),
+        peer(robot, model.chain.jointNames(), rotors) {
+    if (with_motors) {
+      drive(random);
+    } else {
+      stiffness = rest = rotor = VectorXd::Zero(n());
+    }
+    q = random.vector(n(), 3);
+    qd = random.vector(n(), 2);
+    qdd = random.vector(n(), 5);
+  }
+
+  /// Puts motors before the joints, each of which moves some of them, and springs beside most motors.
+  void drive(Random& random) {
+    const Index m = n() - random.below(static_cast<int>(n()));
+    chain_dynamics::Motors motors;
+    MatrixXd M = MatrixXd::Identity(n(), m);
+    for (Index j = 0; j < n(); ++j) {
+      if (random.below(2) == 0) M.row(j) += random.vector(m, 1).transpose();
+    }
+    motors.M = M;
+    motors.offset = random.vector(n(), 1);
+    rotor = random.vector(m, 1).cwiseAbs();
+    motors.rotor_inertia.assign(rotor.begin(), rotor.end());
+    const Mechanism joints{model.chain, model.branches};
+    model = chain_dynamics::Model(withMotors(joints, motors));
+    peer.s += peer.S * motors.offset;
+    peer.S = (peer.S * M).eval();
+    stiffness = random.vector(m, 9);
+    rest = random.vector(m, 1);
+    for (Index j = 0; j < m; ++j) {
+      const auto type = model.chain.joints()[static_cast<std::size_t>(j)].type;
+      if (random.below(4) == 0 || type == chain_dynamics::JointType::kContinuous) stiffness[j] = 0;
+    }
+    model.stiffness = stiffness;
+    model.rest = rest;
+    checkModel(model);
+  }
 
   Index n() const { return model.chain.jointCount(); }
 
   static chain_dynamics::Model mechanismOf(const RobotDescription& robot,
                                            const std::vector<std::string>& tips,
-                                           const std::map<std::string, double>& rotors) {
+                                           const std::map<std::string, double>& rotors,
+                                           bool branches_of_chains) {
     chain_dynamics::UrdfOptions options;
     options.gravity = kGravity;
     options.rotor_inertia = [&](const RobotDescription::Joint& joint) {
       const auto found = rotors.find(joint.name);
       return found == rotors.end() ? 0.0 : found->second;
     };
-    return chain_dynamics::Model(mechanismFromRobot(robot, options, tips));
+    return chain_dynamics::Model(mechanismFromRobot(robot, options, tips, branches_of_chains));
   }
 
   /// Adds a body to the tip of a branch, of both.
@@ -199,9 +233,13 @@ class Pair {
     const VectorXd q_t = S * q + peer.s, qd_t = S * qd, qdd_t = S * qdd;
     TreeData data(peer.model);
 
-    const VectorXd tau = S.transpose() * pinocchio::rnea(peer.model, data, q_t, qd_t, qdd_t);
-    const VectorXd g = S.transpose() * pinocchio::computeGeneralizedGravity(peer.model, data, q_t);
-    const VectorXd c = S.transpose() * pinocchio::nonLinearEffects(peer.model, data, q_t, qd_t) - g;
+    const VectorXd springs = stiffness.cwiseProduct(q - rest);
+    const VectorXd tau = S.transpose() * pinocchio::rnea(peer.model, data, q_t, qd_t, qdd_t) +
+                         springs + rotor.cwiseProduct(qdd);
+    const VectorXd g =
+        S.transpose() * pinocchio::computeGeneralizedGravity(peer.model, data, q_t) + springs;
+    const VectorXd c =
+        S.transpose() * pinocchio::nonLinearEffects(peer.model, data, q_t, qd_t) - (g - springs);
 #if PINOCCHIO_VERSION_AT_LEAST(3, 0, 0)
     pinocchio::crba(peer.model, data, q_t, pinocchio::Convention::LOCAL);
 #else
@@ -209,9 +247,9 @@ class Pair {
 #endif
     data.M.triangularView<Eigen::StrictlyLower>() =
         data.M.transpose().triangularView<Eigen::StrictlyLower>();
-    const MatrixXd H = S.transpose() * data.M * S;
+    const MatrixXd H = S.transpose() * data.M * S + MatrixXd(rotor.asDiagonal());
     pinocchio::computeRNEADerivatives(peer.model, data, q_t, qd_t, qdd_t);
-    const MatrixXd by_q = S.transpose() * data.dtau_dq * S;
+    const MatrixXd by_q = S.transpose() * data.dtau_dq * S + MatrixXd(stiffness.asDiagonal());
     const MatrixXd by_qd = S.transpose() * data.dtau_dv * S;
 
     const FastModel fast(model, FastModel::instructionSets().back());
@@ -260,8 +298,10 @@ class Pair {
     EXPECT_NEAR(kineticEnergy(model, q, qd), kinetic, kRounding * (1 + kinetic));
     // apart from a constant: held links that no joint moves count in one of them only
     const VectorXd q_0 = VectorXd::Zero(n());
-    const double potential = pinocchio::computePotentialEnergy(peer.model, data, q_t) -
-                             pinocchio::computePotentialEnergy(peer.model, data, VectorXd(peer.s));
+    const double potential =
+        pinocchio::computePotentialEnergy(peer.model, data, q_t) -
+        pinocchio::computePotentialEnergy(peer.model, data, VectorXd(peer.s)) +
+        0.5 * stiffness.dot(VectorXd((q - rest).cwiseAbs2() - rest.cwiseAbs2()));
     EXPECT_NEAR(potentialEnergy(model, q) - potentialEnergy(model, q_0), potential,
                 kRounding * (100 + std::abs(potential)));
     EXPECT_TRUE(model.inertiaIsPhysical());
@@ -307,6 +347,7 @@ class Pair {
 
   chain_dynamics::Model model;
   Peer peer;
+  VectorXd stiffness, rest, rotor;  // of the coordinates
   VectorXd q, qd, qdd;
 
  private:
@@ -325,7 +366,9 @@ class Pair {
     VectorXd tau(n());
     fast.torques(q.data(), qd.data(), qdd.data(), tau.data());
     const VectorXd rotors = peer.model.armature.cwiseProduct(qdd_t);
-    expectEqual(Y * p.reshaped() + peer.S.transpose() * rotors, tau, "Y p");
+    expectEqual(Y * p.reshaped() + peer.S.transpose() * rotors + rotor.cwiseProduct(qdd) +
+                    stiffness.cwiseProduct(q - rest),
+                tau, "Y p");
     if (fast.linkCount() < peer.model.nv) return;  // links that are held are parts of others
     for (Index link = 0; link < fast.linkCount(); ++link) {
       const auto joint = peer.model.getJointId(joint_of_link[static_cast<std::size_t>(link)]);
@@ -405,7 +448,7 @@ TEST(Tree, AgreesWithPinocchiosTree) {
       }
       if (tips.empty()) tips = {"*"};
     }
-    Pair pair(robot, tips, rotors, random);
+    Pair pair(robot, tips, rotors, random, k % 3 == 0);
     if (pair.model.branches.empty()) continue;  // a chain
     pair.compare();
     pair.compareTips();
