@@ -27,31 +27,15 @@ using BranchMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
 /// `S x`: velocities of the joints of a branch, or accelerations.
 BranchVector motionOf(const Branch& branch, const ConstVectorRef& x) {
   BranchVector result = BranchVector::Zero(branch.chain.jointCount());
-  for (const Follow& entry : branch.S) result[entry.joint] += entry.factor * x[entry.coordinate];
+  addMotion(branch.S, x, result);
   return result;
 }
 
 /// `S q + s`.
 BranchVector positionsOf(const Branch& branch, const ConstVectorRef& q) {
-  return motionOf(branch, q) +
-         Eigen::Map<const Eigen::VectorXd>(branch.s.data(), branch.chain.jointCount());
-}
-
-/// `result += S' of_branch`.
-void add(const Branch& branch, const BranchVector& of_branch, Eigen::Ref<Eigen::VectorXd> result) {
-  for (const Follow& entry : branch.S) {
-    result[entry.coordinate] += entry.factor * of_branch[entry.joint];
-  }
-}
-
-/// `result += S' of_branch S`.
-void add(const Branch& branch, const BranchMatrix& of_branch, MatrixRef result) {
-  for (const Follow& row : branch.S) {
-    for (const Follow& column : branch.S) {
-      result(row.coordinate, column.coordinate) +=
-          row.factor * column.factor * of_branch(row.joint, column.joint);
-    }
-  }
+  BranchVector result = Eigen::Map<const BranchVector>(branch.s.data(), branch.chain.jointCount());
+  addMotion(branch.S, q, result);
+  return result;
 }
 
 /// The sum over the branches of a vector, which `compute` gives of a branch with its positions.
@@ -62,7 +46,7 @@ void sumOfVectors(const Model& model, const ConstVectorRef& q, VectorRef result,
   for (const Branch& branch : model.branches) {
     BranchVector of_branch(branch.chain.jointCount());
     compute(branch, positionsOf(branch, q), of_branch);
-    add(branch, of_branch, sum);
+    addTorques(branch.S, of_branch, sum);
   }
   result = sum;  // which may stand where an input does
 }
@@ -76,7 +60,7 @@ void sumOfMatrices(const Model& model, const ConstVectorRef& q, MatrixRef result
     const Eigen::Index m = branch.chain.jointCount();
     BranchMatrix of_branch(m, m);
     compute(branch, positionsOf(branch, q), of_branch);
-    add(branch, of_branch, result);
+    addMatrix(branch.S, of_branch, result);
   }
 }
 
@@ -133,9 +117,9 @@ void torqueDerivatives(const Model& model, const ConstVectorRef& q, const ConstV
         branch.chain, internal::OwnParameters(), ConstVectorRef(positionsOf(branch, q)),
         ConstVectorRef(motionOf(branch, qd)), ConstVectorRef(motionOf(branch, qdd)),
         MatrixRef(by_q), MatrixRef(by_qd), MatrixRef(by_qdd));
-    add(branch, by_q, dtau_dq);
-    add(branch, by_qd, dtau_dqd);
-    add(branch, by_qdd, dtau_dqdd);
+    addMatrix(branch.S, by_q, dtau_dq);
+    addMatrix(branch.S, by_qd, dtau_dqd);
+    addMatrix(branch.S, by_qdd, dtau_dqdd);
   }
 }
 
@@ -166,7 +150,7 @@ void addGravityDerivatives(const Model& model, const ConstVectorRef& q,
       chain_dynamics::gravityVector(branch.chain, varied, g);
     };
     differentiate(positionsOf(branch, q), of_positions, of_branch);
-    add(branch, of_branch, dg_dq);
+    addMatrix(branch.S, of_branch, dg_dq);
   }
   for (Eigen::Index j = 0; j < q.size(); ++j) dtau_dq.row(j) += factors[j] * dg_dq.row(j);
 }

@@ -42,6 +42,42 @@ struct Follow {
   double factor = 1;
 };
 
+/// @name Between coordinates and joints, by the entries of S
+/// Numbers by `[i]`, matrices by `(i, j)`. Real time: no allocation, lock, exception or system call.
+/// @{
+
+/// `joints += S x`: velocities, accelerations; positions where `joints` begins as s.
+template <class Coordinates, class Joints>
+void addMotion(const std::vector<Follow>& S, const Coordinates& x, Joints&& joints) {
+  for (const Follow& entry : S) joints[entry.joint] += entry.factor * x[entry.coordinate];
+}
+
+/// `tau += S' of_joints`.
+template <class Joints, class Coordinates>
+void addTorques(const std::vector<Follow>& S, const Joints& of_joints, Coordinates&& tau) {
+  for (const Follow& entry : S) tau[entry.coordinate] += entry.factor * of_joints[entry.joint];
+}
+
+/// `H += S' of_joints S`.
+template <class Joints, class Coordinates>
+void addMatrix(const std::vector<Follow>& S, const Joints& of_joints, Coordinates&& H) {
+  for (const Follow& column : S) {
+    for (const Follow& row : S) {
+      H(row.coordinate, column.coordinate) +=
+          row.factor * column.factor * of_joints(row.joint, column.joint);
+    }
+  }
+}
+
+/// `J += of_joints S`.
+template <class Joints, class Coordinates>
+void addJacobian(const std::vector<Follow>& S, const Joints& of_joints, Coordinates&& J) {
+  for (const Follow& entry : S) {
+    J.col(entry.coordinate) += entry.factor * of_joints.col(entry.joint);
+  }
+}
+/// @}
+
 /// One of the chains whose sum a mechanism is.
 struct Branch {
   std::string tip;        ///< name of the link whose frame is chain.tip()
