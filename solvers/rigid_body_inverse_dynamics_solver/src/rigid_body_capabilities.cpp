@@ -41,6 +41,16 @@ void wrenchTorques(const FastModel& fast, const ConstVectorRef& q, WrenchFrame f
 
 }  // namespace
 
+auto RigidBodyTip::kinematicsOfTip(std::size_t tip) const
+    -> const inverse_dynamics_solver::Kinematics& {
+  return dynamic_cast<const Kinematics&>(solver_).kinematicsOf(solver_.tipNames()[tip]);
+}
+
+auto RigidBodyTip::externalWrenchAtTip(std::size_t tip) const
+    -> const inverse_dynamics_solver::ExternalWrench& {
+  return dynamic_cast<const ExternalWrench&>(solver_).externalWrenchAt(solver_.tipNames()[tip]);
+}
+
 void RigidBodyTip::computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
                                           const ConstVectorRef& wrench, VectorRef tau) const {
   wrenchTorques(fast_, q, frame, wrench, tau);

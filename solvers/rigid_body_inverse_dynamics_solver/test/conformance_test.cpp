@@ -13,8 +13,8 @@
 #include "chain_dynamics/model.hpp"
 #include "chain_dynamics/model_file.hpp"
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
+#include "inverse_dynamics_solver/conformance/two_arms.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
-#include "two_arms.hpp"
 
 namespace rigid_body_inverse_dynamics_solver::conformance_test {
 

@@ -18,13 +18,13 @@
 #include "chain_dynamics/urdf.hpp"
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
+#include "inverse_dynamics_solver/conformance/two_arms.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/external_wrench.hpp"
 #include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
 #include "inverse_dynamics_solver/payload.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
-#include "two_arms.hpp"
 
 namespace rigid_body_inverse_dynamics_solver::rigid_body_inverse_dynamics_solver_test {
 
@@ -451,6 +451,7 @@ using inverse_dynamics_solver::Kinematics;
 using inverse_dynamics_solver::RigidBody;
 using inverse_dynamics_solver::WrenchInTip;
 using inverse_dynamics_solver::conformance::ParameterMap;
+using inverse_dynamics_solver::conformance::twoArms;
 using Names = std::vector<std::string>;
 
 InverseDynamicsSolverRigidBody& initialized(InverseDynamicsSolverRigidBody& solver,

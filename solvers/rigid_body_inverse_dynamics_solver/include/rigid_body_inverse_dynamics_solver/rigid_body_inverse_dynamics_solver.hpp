@@ -69,6 +69,9 @@ class RigidBodyTip : public inverse_dynamics_solver::Kinematics,
   const inverse_dynamics_solver::InverseDynamicsSolver& torqueSolver() const override {
     return solver_;
   }
+  const inverse_dynamics_solver::Kinematics& kinematicsOfTip(std::size_t tip) const override;
+  const inverse_dynamics_solver::ExternalWrench& externalWrenchAtTip(
+      std::size_t tip) const override;
   void computeTipPose(const ConstVectorRef& q,
                       chain_dynamics::Transform<double>& pose) const override {
     fast_.tipPose(q.data(), pose.R.data(), pose.p.data());

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -15,9 +16,11 @@
 #include <vector>
 
 #include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/model.hpp"
 #include "chain_dynamics/regressor.hpp"
 #include "chain_dynamics/spatial.hpp"
+#include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 #include "inverse_dynamics_solver/conformance/batch_tests.hpp"
 #include "inverse_dynamics_solver/conformance/capabilities.hpp"
 #include "inverse_dynamics_solver/conformance/law_tests.hpp"
@@ -145,6 +148,49 @@ TEST_P(SolverConformance, WrenchAddsItsPowerPerVelocity) {
                              R.transpose() * kWrenchInRoot.torque};
     EXPECT_TRUE(near(contact->getExternalTorques(x.q, turned), external, kRounding,
                      sizeOf(J) * w.cwiseAbs().sum()));
+  }
+}
+
+TEST_P(SolverConformance, EachTipIsTheOneOfASolverWhoseFirstTipItIs) {
+  const InverseDynamicsSolver& s = *solver_;
+  INVERSE_DYNAMICS_SOLVER_REQUIRE(Kinematics, kinematics);
+  INVERSE_DYNAMICS_SOLVER_REQUIRE(ExternalWrench, contact);
+  std::vector<std::string> tips = s.tipNames();
+  if (tips.empty()) GTEST_SKIP() << "a chain has one tip";
+  const Eigen::Index n = s.jointCount();
+  for (const std::string& tip : s.tipNames()) {
+    SCOPED_TRACE(tip);
+    std::iter_swap(tips.begin(), std::find(tips.begin(), tips.end(), tip));
+    const auto turned = makeInitialized({{"tip", tips}});
+    const auto& first = dynamic_cast<const Kinematics&>(*turned);
+    const auto& first_contact = dynamic_cast<const ExternalWrench&>(*turned);
+    const Kinematics& own = kinematics->kinematicsOf(tip);
+    const ExternalWrench& own_contact = contact->externalWrenchAt(tip);
+    for (const std::string& other : tips) {
+      EXPECT_EQ(&own.kinematicsOf(other), &kinematics->kinematicsOf(other));
+      EXPECT_EQ(&own_contact.externalWrenchAt(other), &contact->externalWrenchAt(other));
+    }
+    for (const State& x : randomStates(kStates)) {
+      Eigen::MatrixXd J(6, n), dJ(6, n);
+      Eigen::VectorXd tau(n), tau_of_motion(n);
+      {
+        const AllocationGuard guard;
+        own.getTipJacobian(x.q, J);
+        own.getTipJacobianDerivative(x.q, x.qd, dJ);
+        own_contact.getExternalTorques(x.q, kWrenchInTip, tau);
+        own_contact.getTorques(x.q, x.qd, x.qdd, kWrenchInTip, tau_of_motion);
+        EXPECT_EQ(guard.count(), 0);
+      }
+      const auto pose = own.getTipPose(x.q), expected = first.getTipPose(x.q);
+      EXPECT_TRUE(near(pose.R, expected.R, kRounding, 1.0));
+      EXPECT_TRUE(near(pose.p, expected.p, kRounding, sizeOf(expected.p)));
+      EXPECT_TRUE(near(J, first.getTipJacobian(x.q), kRounding, sizeOf(J)));
+      EXPECT_TRUE(near(dJ, first.getTipJacobianDerivative(x.q, x.qd), kRounding, sizeOf(dJ)));
+      EXPECT_TRUE(
+          near(tau, first_contact.getExternalTorques(x.q, kWrenchInTip), kRounding, sizeOf(tau)));
+      EXPECT_TRUE(near(tau_of_motion, s.getTorques(x.q, x.qd, x.qdd) + tau, kRounding,
+                       sizeOf(tau_of_motion)));
+    }
   }
 }
 
