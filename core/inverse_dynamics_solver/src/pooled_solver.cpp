@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 
+#include <Eigen/Cholesky>
 #include <cstddef>
 #include <memory>
 #include <new>
@@ -11,7 +12,12 @@
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/friction.hpp"
 #include "chain_dynamics/friction_laws/coefficients.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/model.hpp"
+#include "chain_dynamics/spatial.hpp"
+#include "inverse_dynamics_solver/configuration.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
+#include "sum_of_chains.hpp"
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
@@ -25,13 +31,19 @@ constexpr double kNoLoad = 0.0;
 auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
   // Everything that can fail comes first.
   refuseMotorsAndSprings(configuration);
-  auto bare = std::make_unique<const chain_dynamics::Model>(chainFromDescription(configuration));
+  auto bare =
+      std::make_unique<const chain_dynamics::Model>(mechanismFromDescription(configuration));
   const chain_dynamics::Chain& chain = bare->chain;
   const std::size_t max_threads = readMaxThreads(configuration);
   auto conditions = readConditions(configuration, chain.gravity());
-  auto robot = robotOf(conditions->appliedTo(*bare).chain, max_threads);
+  auto robot = robotOf(conditions->appliedTo(*bare), max_threads);
   const bool inertia_is_physical = bare->inertiaIsPhysical();
   JointInfo info{chain.jointNames(), chain.warnings(), chain.jointTypes()};
+  std::vector<std::shared_ptr<const PooledTip>> tips;
+  for (const chain_dynamics::Branch& branch : bare->branches) {
+    tips.push_back(std::make_shared<const PooledTip>(*this, tips.size()));
+    info.tip_names.push_back(branch.tip);
+  }
   DescriptionFriction friction = descriptionFriction(configuration, chain);
   info.warnings.insert(info.warnings.end(), friction.warnings.begin(), friction.warnings.end());
   std::vector<chain_dynamics::FrictionForm> laws;
@@ -42,28 +54,56 @@ auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
   // Nothing below can fail.
   beginWith(std::move(robot), std::move(conditions));
   bare_ = std::move(bare);
+  tips_ = std::move(tips);
   max_threads_ = max_threads;
   friction_ = std::move(laws);
   inertia_is_physical_ = inertia_is_physical;
   return info;
 }
 
-auto PooledSolver::robotOf(const chain_dynamics::Chain& chain, std::size_t max_threads) const
+auto PooledSolver::treeWorkspaceMaker(const chain_dynamics::Model& tree) const -> WorkspaceMaker {
+  throw InvalidParameterValueException(
+      "parameter 'tip'", "wrong value",
+      "one link, without joints that mimic others, as the solver computes chains",
+      std::to_string(tree.branches.size()) + " of robot " + tree.name,
+      "name another tip, or take rigid_body_inverse_dynamics_solver");
+}
+
+auto PooledSolver::sumOfChains(const chain_dynamics::Model& tree) const -> WorkspaceMaker {
+  std::vector<WorkspaceMaker> makers;
+  makers.reserve(tree.branches.size());
+  for (const chain_dynamics::Branch& branch : tree.branches) {
+    makers.push_back(workspaceMaker(branch.chain));
+  }
+  const Eigen::Index n = tree.chain.jointCount();
+  return [n, branches = std::make_shared<const std::vector<chain_dynamics::Branch>>(tree.branches),
+          makers] {
+    std::vector<std::unique_ptr<Workspace>> chains;
+    chains.reserve(makers.size());
+    for (const WorkspaceMaker& make : makers) chains.push_back(make());
+    return std::make_unique<SumOfChains>(n, branches, std::move(chains));
+  };
+}
+
+auto PooledSolver::robotOf(const chain_dynamics::Model& model, std::size_t max_threads) const
     -> std::unique_ptr<const PooledRobot> {
   try {
-    return std::make_unique<const PooledRobot>(PooledRobot{
-        std::make_unique<WorkspacePool<Workspace>>(max_threads, workspaceMaker(chain))});
+    return std::make_unique<const PooledRobot>(
+        PooledRobot{std::make_unique<WorkspacePool<Workspace>>(
+            max_threads,
+            model.branches.empty() ? workspaceMaker(model.chain) : treeWorkspaceMaker(model))});
   } catch (const std::bad_alloc&) {
-    throw Exception(
-        "chain " + chain.name(), "no memory left", "room for a workspace for each of max_threads",
-        std::to_string(chain.jointCount()) + " joints, max_threads " + std::to_string(max_threads),
-        "set max_threads to what is used at the same time");
+    throw Exception("robot " + model.name, "no memory left",
+                    "room for a workspace for each of max_threads",
+                    std::to_string(model.chain.jointCount()) + " joints, max_threads " +
+                        std::to_string(max_threads),
+                    "set max_threads to what is used at the same time");
   }
 }
 
 auto PooledSolver::robotUnder(const Conditions& conditions) const
     -> std::unique_ptr<const PooledRobot> {
-  return robotOf(conditions.appliedTo(*bare_).chain, max_threads_);
+  return robotOf(conditions.appliedTo(*bare_), max_threads_);
 }
 
 void PooledSolver::computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const {
@@ -111,6 +151,41 @@ void PooledSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef&
                                   const ConstVectorRef& qdd, VectorRef tau) const {
   borrow<Workspace>()->torques(q, qd, qdd, tau);
   addFriction(qd, tau);
+}
+
+void PooledSolver::computeTreeAccelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                            const ConstVectorRef& tau, VectorRef qdd) const {
+  constexpr int kMost = chain_dynamics::kMostCoordinates;
+  using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMost, 1>;
+  const Eigen::Index n = q.size();
+  const Numbers at_rest = Numbers::Zero(n);
+  Numbers rest(n);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost> H(n, n);
+  const auto workspace = borrow<Workspace>();
+  workspace->torques(q, qd, at_rest, rest);
+  addFriction(qd, rest);
+  rest = tau - rest;
+  workspace->inertiaMatrix(q, H);
+  qdd = H.llt().solve(rest);
+}
+
+void PooledTip::computeTipPose(const ConstVectorRef& q,
+                               chain_dynamics::Transform<double>& pose) const {
+  solver_.borrow<TipWorkspace>()->tipPose(tip_, q, pose);
+}
+
+void PooledTip::computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const {
+  solver_.borrow<TipWorkspace>()->tipJacobian(tip_, q, J);
+}
+
+void PooledTip::computeTipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                             MatrixRef dJ) const {
+  solver_.borrow<TipWorkspace>()->tipJacobianDerivative(tip_, q, qd, dJ);
+}
+
+void PooledTip::computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
+                                       const ConstVectorRef& wrench, VectorRef tau) const {
+  solver_.borrow<TipWorkspace>()->externalTorques(tip_, q, frame, wrench, tau);
 }
 
 }  // namespace v2

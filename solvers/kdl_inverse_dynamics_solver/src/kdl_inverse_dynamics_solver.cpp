@@ -2,7 +2,6 @@
 #include "kdl_inverse_dynamics_solver/kdl_inverse_dynamics_solver.hpp"
 
 #include <chain_dynamics/chain.hpp>
-#include <chain_dynamics/spatial.hpp>
 #include <memory>
 
 #include "kdl_chain.hpp"
@@ -18,31 +17,11 @@ auto InverseDynamicsSolverKDL::workspaceMaker(const chain_dynamics::Chain& chain
   };
 }
 
-void InverseDynamicsSolverKDL::computeTipPose(const ConstVectorRef& q,
-                                              chain_dynamics::Transform<double>& pose) const {
-  borrow<KdlWorkspace>()->tipPose(q, pose);
-}
-
-void InverseDynamicsSolverKDL::computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const {
-  borrow<KdlWorkspace>()->tipJacobian(q, J);
-}
-
-void InverseDynamicsSolverKDL::computeTipJacobianDerivative(const ConstVectorRef& q,
-                                                            const ConstVectorRef& qd,
-                                                            MatrixRef dJ) const {
-  borrow<KdlWorkspace>()->tipJacobianDerivative(q, qd, dJ);
-}
-
-void InverseDynamicsSolverKDL::computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
-                                                      const ConstVectorRef& wrench,
-                                                      VectorRef tau) const {
-  borrow<KdlWorkspace>()->externalTorques(q, frame, wrench, tau);
-}
-
 void InverseDynamicsSolverKDL::computeAccelerations(const ConstVectorRef& q,
                                                     const ConstVectorRef& qd,
                                                     const ConstVectorRef& tau,
                                                     VectorRef qdd) const {
+  if (!tipNames().empty()) return computeTreeAccelerations(q, qd, tau, qdd);
   // qdd holds the torques without friction until then
   computeFriction(q, qd, qdd);
   qdd = tau - qdd;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kdl_workspace.hpp"
 
+#include <cstddef>
 #include <kdl/chain.hpp>
 #include <kdl/frames.hpp>
 #include <kdl/joint.hpp>
@@ -102,23 +103,26 @@ const KDL::Jacobian& KdlWorkspace::jacobian(const ConstVectorRef& q) {
   return jacobian_;
 }
 
-void KdlWorkspace::tipPose(const ConstVectorRef& q, chain_dynamics::Transform<double>& result) {
+void KdlWorkspace::tipPose(std::size_t /*tip*/, const ConstVectorRef& q,
+                           chain_dynamics::Transform<double>& result) {
   const KDL::Frame& X = pose(q);
   result.R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(X.M.data);
   result.p = Eigen::Map<const Eigen::Vector3d>(X.p.data);
 }
 
-void KdlWorkspace::tipJacobian(const ConstVectorRef& q, MatrixRef J) { J = jacobian(q).data; }
+void KdlWorkspace::tipJacobian(std::size_t /*tip*/, const ConstVectorRef& q, MatrixRef J) {
+  J = jacobian(q).data;
+}
 
-void KdlWorkspace::tipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                         MatrixRef dJ) {
+void KdlWorkspace::tipJacobianDerivative(std::size_t /*tip*/, const ConstVectorRef& q,
+                                         const ConstVectorRef& qd, MatrixRef dJ) {
   motion_.q.data = q;
   motion_.qdot.data = qd;
   check(derivatives_.JntToJacDot(motion_, jacobian_), derivatives_, "derivative of the Jacobian");
   dJ = jacobian_.data;
 }
 
-void KdlWorkspace::externalTorques(const ConstVectorRef& q, WrenchFrame frame,
+void KdlWorkspace::externalTorques(std::size_t /*tip*/, const ConstVectorRef& q, WrenchFrame frame,
                                    const ConstVectorRef& wrench, VectorRef tau) {
   KDL::Wrench w(KDL::Vector(wrench[0], wrench[1], wrench[2]),
                 KDL::Vector(wrench[3], wrench[4], wrench[5]));

@@ -3,6 +3,7 @@
 /// KDL's solvers of a chain with the memory they write to.
 #pragma once
 
+#include <cstddef>
 #include <kdl/chain.hpp>
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainfdsolver_recursive_newton_euler.hpp>
@@ -31,7 +32,7 @@ using inverse_dynamics_solver::VectorRef;
 using inverse_dynamics_solver::WrenchFrame;
 
 /// KDL's solvers of one chain and all that they write to. One thread at a time.
-class KdlWorkspace : public inverse_dynamics_solver::Workspace {
+class KdlWorkspace : public inverse_dynamics_solver::TipWorkspace {
  public:
   /// @param tip  pose of the tip in the frame of the last segment.
   KdlWorkspace(const KDL::Chain& chain, const KDL::Vector& gravity,
@@ -42,17 +43,17 @@ class KdlWorkspace : public inverse_dynamics_solver::Workspace {
   void gravityVector(const ConstVectorRef& q, VectorRef g) override;
   void torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                VectorRef tau) override;
+  void tipPose(std::size_t tip, const ConstVectorRef& q,
+               chain_dynamics::Transform<double>& pose) override;
+  void tipJacobian(std::size_t tip, const ConstVectorRef& q, MatrixRef J) override;
+  void tipJacobianDerivative(std::size_t tip, const ConstVectorRef& q, const ConstVectorRef& qd,
+                             MatrixRef dJ) override;
+  void externalTorques(std::size_t tip, const ConstVectorRef& q, WrenchFrame frame,
+                       const ConstVectorRef& wrench, VectorRef tau) override;
 
-  /// @name As the compute... of Kinematics, ExternalWrench and, without friction, ForwardDynamics
-  /// @{
-  void tipPose(const ConstVectorRef& q, chain_dynamics::Transform<double>& pose);
-  void tipJacobian(const ConstVectorRef& q, MatrixRef J);
-  void tipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef dJ);
-  void externalTorques(const ConstVectorRef& q, WrenchFrame frame, const ConstVectorRef& wrench,
-                       VectorRef tau);
+  /// As ForwardDynamics, without friction.
   void accelerations(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& tau,
                      VectorRef qdd);
-  /// @}
 
  private:
   const KDL::Jacobian& jacobian(const ConstVectorRef& q);

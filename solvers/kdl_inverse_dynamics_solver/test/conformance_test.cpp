@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
+#include "inverse_dynamics_solver/conformance/two_arms.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
 namespace kdl_inverse_dynamics_solver::conformance_test {
@@ -33,8 +34,17 @@ struct KdlPandaWithFriction : Kdl {
   static ParameterMap parameters() { return {{"urdf_friction", true}}; }
 };
 
+struct KdlTwoArms : Kdl {
+  static std::string robotDescription() { return twoArms(); }
+  static ParameterMap parameters() {
+    return {{"tip", std::vector<std::string>{"left_other_finger", "right_tool", "left_finger"}},
+            {"urdf_friction", true}};
+  }
+};
+
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Oblique, KdlOblique);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Ur10, KdlUr10);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaWithFriction, KdlPandaWithFriction);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(TwoArms, KdlTwoArms);
 
 }  // namespace kdl_inverse_dynamics_solver::conformance_test

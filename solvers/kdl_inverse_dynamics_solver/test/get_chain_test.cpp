@@ -109,12 +109,12 @@ TEST(KdlChain, IsThatOfGetChainBetweenAnyTwoLinks) {
       EXPECT_LE((tau - their_tau).cwiseAbs().maxCoeff(), kRounding) << their_tau.transpose();
 
       Eigen::MatrixXd J(6, n), their_J(6, n);
-      ours.tipJacobian(q, J);
-      expected.tipJacobian(q, their_J);
+      ours.tipJacobian(0, q, J);
+      expected.tipJacobian(0, q, their_J);
       EXPECT_LE((J - their_J).cwiseAbs().maxCoeff(), kRounding);
       chain_dynamics::Transform<double> X, their_X;
-      ours.tipPose(q, X);
-      expected.tipPose(q, their_X);
+      ours.tipPose(0, q, X);
+      expected.tipPose(0, q, their_X);
       EXPECT_LE((X.p - their_X.p).cwiseAbs().maxCoeff(), kRounding);
       EXPECT_LE((X.R - their_X.R).cwiseAbs().maxCoeff(), kRounding);
     }

@@ -4,26 +4,27 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chain_dynamics/chain.hpp>
-#include <chain_dynamics/coriolis_vector.hpp>
-#include <chain_dynamics/gravity_vector.hpp>
-#include <chain_dynamics/inertia_matrix.hpp>
-#include <chain_dynamics/torques.hpp>
+#include <chain_dynamics/mechanism.hpp>
+#include <chain_dynamics/model.hpp>
 #include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/parameters.hpp>
+#include <inverse_dynamics_solver/pooled_solver.hpp>
 #include <random>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
+#include "inverse_dynamics_solver/conformance/two_arms.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace kdl_inverse_dynamics_solver::kdl_inverse_dynamics_solver_test {
 
 using inverse_dynamics_solver::Parameters;
 using inverse_dynamics_solver::conformance::errorOf;
+using inverse_dynamics_solver::conformance::twoArms;
 
 std::string obliqueArm() {
   using namespace inverse_dynamics_solver::conformance;
@@ -36,25 +37,28 @@ constexpr double kRounding = 1e-11;
 
 /// The engine is other code, and no part of KDL.
 TEST(InverseDynamicsSolverKDL, AgreesWithTheEngineWhateverIsTakenOfTheRobot) {
-  const std::vector<Parameters> choices = {
-      {{"ids.tip", "tool"}},
-      {{"ids.tip", "tool"}, {"ids.attached", "ignore"}},
-      {{"ids.tip", "tool"}, {"ids.locked_joints.grip", 0.8}},
-      {{"ids.tip", "finger"}, {"ids.gravity", std::vector<double>{1.0, 2.0, 3.0}}},
-      {{"ids.root", "upper"}, {"ids.tip", "wrist"}},
-      {{"ids.root", "pedestal"}, {"ids.tip", "slide"}},
-      {{"ids.root", "finger"}, {"ids.tip", "floor"}, {"ids.rotor_inertia.push", 0.7}},
-      {{"ids.root", "cover"}, {"ids.tip", "tool"}, {"ids.rotor_inertia.spin", 0.05}}};
+  const std::string arm = obliqueArm(), two_arms = twoArms();
+  const std::vector<std::pair<Parameters, std::string>> choices = {
+      {{{"ids.tip", "tool"}}, arm},
+      {{{"ids.tip", "tool"}, {"ids.attached", "ignore"}}, arm},
+      {{{"ids.tip", "tool"}, {"ids.locked_joints.grip", 0.8}}, arm},
+      {{{"ids.tip", "finger"}, {"ids.gravity", std::vector<double>{1.0, 2.0, 3.0}}}, arm},
+      {{{"ids.root", "upper"}, {"ids.tip", "wrist"}}, arm},
+      {{{"ids.root", "pedestal"}, {"ids.tip", "slide"}}, arm},
+      {{{"ids.root", "finger"}, {"ids.tip", "floor"}, {"ids.rotor_inertia.push", 0.7}}, arm},
+      {{{"ids.root", "cover"}, {"ids.tip", "tool"}, {"ids.rotor_inertia.spin", 0.05}}, arm},
+      {{{"ids.tip", "*"}, {"ids.rotor_inertia.left_other_finger_joint", 0.7}}, two_arms},
+      {{{"ids.root", "left_hand"}, {"ids.tip", "right_tool,left_finger"}}, two_arms}};
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(-3.0, 3.0);
   Eigen::VectorXd last;
-  for (const Parameters& choice : choices) {
+  for (const auto& [choice, urdf] : choices) {
     InverseDynamicsSolverKDL solver;
-    solver.initialize(choice, "ids", obliqueArm());
-    const chain_dynamics::Chain chain =
-        chainFromDescription(readConfiguration(choice, "ids", obliqueArm()));
-    const Eigen::Index n = chain.jointCount();
-    ASSERT_EQ(solver.jointNames(), chain.jointNames());
+    solver.initialize(choice, "ids", urdf);
+    const chain_dynamics::Model model(
+        mechanismFromDescription(readConfiguration(choice, "ids", urdf)));
+    const Eigen::Index n = model.chain.jointCount();
+    ASSERT_EQ(solver.jointNames(), model.chain.jointNames());
     for (int k = 0; k < 20; ++k) {
       const auto draw = [&](double) { return uniform(random); };
       const Eigen::VectorXd q = Eigen::VectorXd::NullaryExpr(n, draw);
@@ -62,10 +66,10 @@ TEST(InverseDynamicsSolverKDL, AgreesWithTheEngineWhateverIsTakenOfTheRobot) {
       const Eigen::VectorXd qdd = Eigen::VectorXd::NullaryExpr(n, draw);
       Eigen::MatrixXd H(n, n);
       Eigen::VectorXd c(n), g(n), tau(n);
-      chain_dynamics::inertiaMatrix(chain, q, H);
-      chain_dynamics::coriolisVector(chain, q, qd, c);
-      chain_dynamics::gravityVector(chain, q, g);
-      chain_dynamics::torques(chain, q, qd, qdd, tau);
+      chain_dynamics::inertiaMatrix(model, q, H);
+      chain_dynamics::coriolisVector(model, q, qd, c);
+      chain_dynamics::gravityVector(model, q, g);
+      chain_dynamics::torques(model, q, qd, qdd, tau);
       EXPECT_LE((solver.getInertiaMatrix(q) - H).cwiseAbs().maxCoeff(), kRounding);
       EXPECT_LE((solver.getCoriolisVector(q, qd) - c).cwiseAbs().maxCoeff(), kRounding);
       EXPECT_LE((solver.getGravityVector(q) - g).cwiseAbs().maxCoeff(), kRounding);
@@ -77,6 +81,25 @@ TEST(InverseDynamicsSolverKDL, AgreesWithTheEngineWhateverIsTakenOfTheRobot) {
     EXPECT_FALSE(g.size() == last.size() && g.isApprox(last, 1e-6));
     last = g;
   }
+}
+
+/// A PooledSolver that doesn't say how it computes trees.
+struct ChainsOnly : InverseDynamicsSolverKDL {
+  WorkspaceMaker treeWorkspaceMaker(const chain_dynamics::Model& tree) const override {
+    return PooledSolver::treeWorkspaceMaker(tree);
+  }
+};
+
+TEST(PooledSolver, RefusesTreesByDefault) {
+  using namespace inverse_dynamics_solver;  // NOLINT(google-build-using-namespace)
+  ChainsOnly solver;
+  const std::string error = conformance::errorOf<InvalidParameterValueException>([&] {
+    solver.initialize({{"tip", "*"}}, "", twoArms());
+  });
+  EXPECT_TRUE(conformance::contains(error, {"'tip'", "one link", "3 of robot two_arms"})) << error;
+  EXPECT_FALSE(solver.isInitialized());
+  solver.initialize({{"tip", "right_tool"}}, "", twoArms());
+  EXPECT_EQ(solver.jointCount(), 5);
 }
 
 TEST(InverseDynamicsSolverKDL, CalculatesRightWithMoreThreadsThanWorkspaces) {

@@ -2,7 +2,7 @@
 #include "pinocchio_inverse_dynamics_solver/pinocchio_inverse_dynamics_solver.hpp"
 
 #include <chain_dynamics/chain.hpp>
-#include <chain_dynamics/spatial.hpp>
+#include <chain_dynamics/model.hpp>
 #include <memory>
 
 #include "pinocchio_model.hpp"
@@ -18,27 +18,10 @@ auto InverseDynamicsSolverPinocchio::workspaceMaker(const chain_dynamics::Chain&
   return [models] { return std::make_unique<PinocchioWorkspace>(models); };
 }
 
-void InverseDynamicsSolverPinocchio::computeTipPose(const ConstVectorRef& q,
-                                                    chain_dynamics::Transform<double>& pose) const {
-  borrow<PinocchioWorkspace>()->tipPose(q, pose);
-}
-
-void InverseDynamicsSolverPinocchio::computeTipJacobian(const ConstVectorRef& q,
-                                                        MatrixRef J) const {
-  borrow<PinocchioWorkspace>()->tipJacobian(q, J);
-}
-
-void InverseDynamicsSolverPinocchio::computeTipJacobianDerivative(const ConstVectorRef& q,
-                                                                  const ConstVectorRef& qd,
-                                                                  MatrixRef dJ) const {
-  borrow<PinocchioWorkspace>()->tipJacobianDerivative(q, qd, dJ);
-}
-
-void InverseDynamicsSolverPinocchio::computeExternalTorques(const ConstVectorRef& q,
-                                                            WrenchFrame frame,
-                                                            const ConstVectorRef& wrench,
-                                                            VectorRef tau) const {
-  borrow<PinocchioWorkspace>()->externalTorques(q, frame, wrench, tau);
+auto InverseDynamicsSolverPinocchio::treeWorkspaceMaker(const chain_dynamics::Model& tree) const
+    -> WorkspaceMaker {
+  auto models = std::make_shared<const Models>(toPinocchio(tree.branches));
+  return [models] { return std::make_unique<PinocchioWorkspace>(models); };
 }
 
 void InverseDynamicsSolverPinocchio::computeCoriolisMatrix(const ConstVectorRef& q,
@@ -65,6 +48,10 @@ void InverseDynamicsSolverPinocchio::computeTorqueDerivatives(const ConstVectorR
   addFrictionSlopes(qd, dtau_dqd);
 }
 
+Eigen::Index InverseDynamicsSolverPinocchio::linkCountImpl() const {
+  return borrow<PinocchioWorkspace>()->linkCount();
+}
+
 void InverseDynamicsSolverPinocchio::computeRegressor(const ConstVectorRef& q,
                                                       const ConstVectorRef& qd,
                                                       const ConstVectorRef& qdd,
@@ -76,6 +63,7 @@ void InverseDynamicsSolverPinocchio::computeAccelerations(const ConstVectorRef& 
                                                           const ConstVectorRef& qd,
                                                           const ConstVectorRef& tau,
                                                           VectorRef qdd) const {
+  if (!tipNames().empty()) return computeTreeAccelerations(q, qd, tau, qdd);
   // qdd holds the torques without friction until then
   computeFriction(q, qd, qdd);
   qdd = tau - qdd;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A chain, or the tree of a robot description, as Pinocchio's model.
+/// A chain, or a tree, as Pinocchio's model.
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/robot_description.hpp"
 #include "pinocchio_headers.hpp"
 
@@ -14,8 +18,24 @@ inline namespace v2 {
 /// joint is a revolute one, so that positions stay angles (nq = nv). The last frame is the tip's.
 Model toPinocchio(const chain_dynamics::Chain& chain);
 
-/// The model of a whole tree, for tests and benchmarks of trees: all joints that move, parents first,
-/// by their names, whatever they mimic; a frame for each link, by its name. Gravity is zero.
+/// A robot that all threads read.
+struct Models {
+  Model with_gravity;
+  Model without_gravity;
+
+  /// How the joints of a tree follow its coordinates, and which links they move [mechanism.hpp]; empty: of
+  /// a chain.
+  std::vector<chain_dynamics::Follow> S = {};
+  std::vector<double> s = {};
+  std::vector<Eigen::Index> link = {};
+};
+
+/// The models of a tree, in which each joint is once. Their frames are those of the tips, after Pinocchio's
+/// own.
+Models toPinocchio(const std::vector<chain_dynamics::Branch>& branches);
+
+/// The model of all joints of a robot description, for tests and benchmarks: those that move, parents first, by
+/// their names, whatever they mimic; a frame for each link, by its name. Gravity is zero.
 Model toPinocchio(const chain_dynamics::RobotDescription& robot);
 
 }  // namespace v2

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
+#include "inverse_dynamics_solver/conformance/two_arms.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
 namespace pinocchio_inverse_dynamics_solver::conformance_test {
@@ -35,8 +36,17 @@ struct PinocchioPandaWithFriction : PinocchioPanda {
   static ParameterMap parameters() { return {{"urdf_friction", true}}; }
 };
 
+struct PinocchioTwoArms : Pinocchio {
+  static std::string robotDescription() { return twoArms(); }
+  static ParameterMap parameters() {
+    return {{"tip", std::vector<std::string>{"left_other_finger", "right_tool", "left_finger"}},
+            {"urdf_friction", true}};
+  }
+};
+
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Oblique, PinocchioOblique);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Panda, PinocchioPanda);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaWithFriction, PinocchioPandaWithFriction);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(TwoArms, PinocchioTwoArms);
 
 }  // namespace pinocchio_inverse_dynamics_solver::conformance_test

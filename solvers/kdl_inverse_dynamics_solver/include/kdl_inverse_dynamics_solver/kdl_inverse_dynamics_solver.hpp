@@ -8,30 +8,30 @@
 #pragma once
 
 #include "chain_dynamics/chain.hpp"
-#include "chain_dynamics/spatial.hpp"
+#include "chain_dynamics/model.hpp"
 #include "inverse_dynamics_solver/external_wrench.hpp"
 #include "inverse_dynamics_solver/forward_dynamics.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
-#include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 
 namespace kdl_inverse_dynamics_solver {
 inline namespace v2 {
 
 using inverse_dynamics_solver::ConstVectorRef;
-using inverse_dynamics_solver::MatrixRef;
 using inverse_dynamics_solver::VectorRef;
 
 /// Torques by KDL's recursive Newton-Euler solver, H, C qd and g by its ChainDynParam [Featherstone
 /// 2008, ch. 5 and 6], the tip by ChainFkSolverPos_recursive, ChainJntToJacSolver and
-/// ChainJntToJacDotSolver, accelerations by ChainFdSolver_RNE. KDL's solvers keep state: parameters
+/// ChainJntToJacDotSolver, accelerations by ChainFdSolver_RNE. Trees are the sums of the chains to their
+/// tips, each by these solvers; their accelerations are solved from H and torques. KDL's solvers keep state: parameters
 /// and promises are those of PooledSolver. (KDL has no Coriolis matrix, energies, derivatives or
 /// regressor.)
 class InverseDynamicsSolverKDL : public inverse_dynamics_solver::PooledSolver,
-                                 public inverse_dynamics_solver::Kinematics,
-                                 public inverse_dynamics_solver::ExternalWrench,
+                                 public inverse_dynamics_solver::PooledTip,
                                  public inverse_dynamics_solver::ForwardDynamics {
  public:
+  InverseDynamicsSolverKDL() : PooledTip(*this, 0) {}
+
   using ExternalWrench::getTorques;
   using ExternalWrench::getTorquesBatch;
   using InverseDynamicsSolver::getTorques;
@@ -40,13 +40,9 @@ class InverseDynamicsSolverKDL : public inverse_dynamics_solver::PooledSolver,
  protected:
   const InverseDynamicsSolver& torqueSolver() const override { return *this; }
   WorkspaceMaker workspaceMaker(const chain_dynamics::Chain& chain) const override;
-  void computeTipPose(const ConstVectorRef& q,
-                      chain_dynamics::Transform<double>& pose) const override;
-  void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const override;
-  void computeTipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                    MatrixRef dJ) const override;
-  void computeExternalTorques(const ConstVectorRef& q, inverse_dynamics_solver::WrenchFrame frame,
-                              const ConstVectorRef& wrench, VectorRef tau) const override;
+  WorkspaceMaker treeWorkspaceMaker(const chain_dynamics::Model& tree) const override {
+    return sumOfChains(tree);
+  }
   void computeAccelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
                             const ConstVectorRef& tau, VectorRef qdd) const override;
 };

@@ -9,13 +9,12 @@
 #pragma once
 
 #include "chain_dynamics/chain.hpp"
-#include "chain_dynamics/spatial.hpp"
+#include "chain_dynamics/model.hpp"
 #include "inverse_dynamics_solver/coriolis_matrix.hpp"
 #include "inverse_dynamics_solver/energies.hpp"
 #include "inverse_dynamics_solver/external_wrench.hpp"
 #include "inverse_dynamics_solver/forward_dynamics.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
-#include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 #include "inverse_dynamics_solver/regressor.hpp"
 #include "inverse_dynamics_solver/torque_derivatives.hpp"
@@ -30,17 +29,19 @@ using inverse_dynamics_solver::VectorRef;
 /// Torques by Pinocchio's `rnea`, H by its `crba`, C qd and g by `nonLinearEffects` and
 /// `computeGeneralizedGravity` [Featherstone 2008, ch. 5 and 6]; the tip by its frames, derivatives
 /// by `computeRNEADerivatives`, the Coriolis matrix as half of that by velocity, the rest by
-/// `computeJointTorqueRegressor`, `aba` and its energies. Pinocchio writes to memory of its own:
+/// `computeJointTorqueRegressor`, `aba` and its energies. A tree is Pinocchio's, with torques, matrices and
+/// Jacobians seen from its coordinates; its accelerations are solved from H and torques. Pinocchio writes to memory of its own:
 /// parameters and promises are those of PooledSolver.
 class InverseDynamicsSolverPinocchio : public inverse_dynamics_solver::PooledSolver,
-                                       public inverse_dynamics_solver::Kinematics,
-                                       public inverse_dynamics_solver::ExternalWrench,
+                                       public inverse_dynamics_solver::PooledTip,
                                        public inverse_dynamics_solver::CoriolisMatrix,
                                        public inverse_dynamics_solver::Energies,
                                        public inverse_dynamics_solver::TorqueDerivatives,
                                        public inverse_dynamics_solver::Regressor,
                                        public inverse_dynamics_solver::ForwardDynamics {
  public:
+  InverseDynamicsSolverPinocchio() : PooledTip(*this, 0) {}
+
   using ExternalWrench::getTorques;
   using ExternalWrench::getTorquesBatch;
   using InverseDynamicsSolver::getTorques;
@@ -49,13 +50,7 @@ class InverseDynamicsSolverPinocchio : public inverse_dynamics_solver::PooledSol
  protected:
   const InverseDynamicsSolver& torqueSolver() const override { return *this; }
   WorkspaceMaker workspaceMaker(const chain_dynamics::Chain& chain) const override;
-  void computeTipPose(const ConstVectorRef& q,
-                      chain_dynamics::Transform<double>& pose) const override;
-  void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const override;
-  void computeTipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                    MatrixRef dJ) const override;
-  void computeExternalTorques(const ConstVectorRef& q, inverse_dynamics_solver::WrenchFrame frame,
-                              const ConstVectorRef& wrench, VectorRef tau) const override;
+  WorkspaceMaker treeWorkspaceMaker(const chain_dynamics::Model& tree) const override;
   void computeCoriolisMatrix(const ConstVectorRef& q, const ConstVectorRef& qd,
                              MatrixRef C) const override;
   double computeKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const override;
@@ -63,6 +58,7 @@ class InverseDynamicsSolverPinocchio : public inverse_dynamics_solver::PooledSol
   void computeTorqueDerivatives(const ConstVectorRef& q, const ConstVectorRef& qd,
                                 const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
                                 MatrixRef dtau_dqdd) const override;
+  Eigen::Index linkCountImpl() const override;
   void computeRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
                         const ConstVectorRef& qdd, MatrixRef Y) const override;
   void computeAccelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
