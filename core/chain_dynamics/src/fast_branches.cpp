@@ -398,15 +398,15 @@ ConstStates part(const Samples& x, Index joints, std::ptrdiff_t first, Index cou
 /// gives, of the states from `first` on.
 ///
 /// @param x  positions, then velocities and accelerations where `compute` reads them.
-template <std::size_t kCount, class Compute>
-void addBranches(const Robot& robot, const Samples (&x)[kCount], std::ptrdiff_t first,
+template <std::size_t Count, class Compute>
+void addBranches(const Robot& robot, const Samples (&x)[Count], std::ptrdiff_t first,
                  const States& sum, const Compute& compute) {
-  Block memory[kCount], result;
+  Block memory[Count], result;
   const std::ptrdiff_t step = sum.joint_step;
   for (const FastBranch& b : branchesOf(robot).branches) {
     const ConstStates none(nullptr, 0, 0, 1, 0);
     ConstStates x_b[] = {none, none, none};
-    for (std::size_t i = 0; i < kCount; ++i) {
+    for (std::size_t i = 0; i < Count; ++i) {
       x_b[i] = motionOf(b, x[i], first, sum.count, step, i == 0, memory[i]);
     }
     const States of_branch = statesOf(result, jointsOf(b), sum.count, step);
@@ -416,8 +416,8 @@ void addBranches(const Robot& robot, const Samples (&x)[kCount], std::ptrdiff_t 
 }
 
 /// The sum of all states, to which start(first, sum) gives its first values.
-template <std::size_t kCount, class Compute, class Start>
-void sumOfBranches(const Robot& robot, std::ptrdiff_t states, const Samples (&x)[kCount],
+template <std::size_t Count, class Compute, class Start>
+void sumOfBranches(const Robot& robot, std::ptrdiff_t states, const Samples (&x)[Count],
                    const Samples& to, const Compute& compute, const Start& start) {
   const std::ptrdiff_t size = blockStates(robot);
   Block memory;

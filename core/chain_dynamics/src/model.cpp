@@ -355,7 +355,7 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
   }
   if (!frictionDependsOnLoad(model)) return;
 
-  const auto loadSlope = [&](Eigen::Index j) {
+  const auto load_slope = [&](Eigen::Index j) {
     return frictionLoadSlope(model.friction[static_cast<std::size_t>(j)], velocity(j), load.g[j]);
   };
   for (Eigen::Index j = 0; j < model.stiffness.size(); ++j) {
@@ -364,7 +364,7 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
   if (!model.branches.empty()) {
     Scratch<double> memory(n);
     Eigen::Map<Eigen::VectorXd> slopes(&memory[0], n);
-    for (Eigen::Index j = 0; j < n; ++j) slopes[j] = loadSlope(j);
+    for (Eigen::Index j = 0; j < n; ++j) slopes[j] = load_slope(j);
     return sums::addGravityDerivatives(model, q, slopes, dtau_dq);
   }
 
@@ -377,7 +377,7 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
     for (Eigen::Index j = 0; j < n; ++j) moved[j] = q[j];
     moved[i] = Number::variable(q[i], 0);
     gravityVector(model.chain, setsOf(model), moved, g);
-    for (Eigen::Index j = 0; j < n; ++j) dtau_dq(j, i) += loadSlope(j) * g[j].derivative[0];
+    for (Eigen::Index j = 0; j < n; ++j) dtau_dq(j, i) += load_slope(j) * g[j].derivative[0];
   }
 }
 

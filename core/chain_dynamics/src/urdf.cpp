@@ -294,7 +294,7 @@ class LockedJoints {
                          (endless ? "one that follows itself through joint "
                                   : "one that moves with the chain's joint ") +
                              robot_.joints[source].name,
-                         "ignore attached bodies, or make it fixed");
+                         "add a tip beyond it, ignore attached bodies, or make it fixed");
       }
     }
     if (!position_[source]) position_[source] = givenPosition(source);
@@ -746,6 +746,7 @@ Mechanism mechanismFromRobot(const RobotDescription& robot, const UrdfOptions& o
   const std::size_t root = rootOf(robot, options);
   const std::vector<std::size_t> links = tipLinks(robot, options, root, tips);
   std::vector<Path> paths;
+  paths.reserve(links.size());
   for (const std::size_t link : links) paths.push_back(pathBetween(robot, root, link));
   const auto mimics = [&robot](const Step& step) {
     const RobotDescription::Joint& joint = robot.joints[step.joint];

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/mechanism.hpp>
 #include <cmath>
 #include <cstdint>
 #include <map>
