@@ -23,7 +23,7 @@ from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.bags import new_recording, topics_of, unwritable
 from inverse_dynamics.recordings.csv_table import CsvTable, is_csv
-from inverse_dynamics.recordings.joint_trajectories import MESSAGE_TYPE, typestore
+from inverse_dynamics.recordings.joint_trajectories import JointTrajectory, typestore
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -120,9 +120,7 @@ def _write_bag(result: TrajectoryTorques, path: Path, progress: Progress) -> tup
                 if topic == result.topic:
                     trajectory, torques = next(filled)
                     columns = [result.joint_names.index(n) for n in trajectory.joint_names]
-                    writer.write(
-                        copy, received, _with_effort(trajectory.message, torques[:, columns])
-                    )
+                    writer.write(copy, received, _with_effort(trajectory, torques[:, columns]))
                 else:
                     writer.write(copy, received, raw)
             done += len(messages)
@@ -154,10 +152,10 @@ def _copied(writer: Writer, connection: Connection) -> Connection | None:
     )
 
 
-def _with_effort(message: Any, efforts: Floats) -> bytes:
-    for point, effort in zip(message.points, efforts, strict=True):
+def _with_effort(trajectory: JointTrajectory, efforts: Floats) -> bytes:
+    for point, effort in zip(trajectory.points, efforts, strict=True):
         point.effort = np.ascontiguousarray(effort)
-    return bytes(typestore().serialize_cdr(message, MESSAGE_TYPE))
+    return bytes(typestore().serialize_cdr(trajectory.message, trajectory.message_type))
 
 
 def _filled_lines(table: CsvTable, result: TrajectoryTorques) -> Iterable[str]:

@@ -19,11 +19,16 @@ import numpy as np
 
 from inverse_dynamics._core import Solver, check_torques
 from inverse_dynamics.diagnosis.plans import Plan, beyond_limits, contradictions
-from inverse_dynamics.errors import BagError
+from inverse_dynamics.errors import BagError, SolverError
 from inverse_dynamics.feedforward.tables import load_lines, load_numbers
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.recordings.csv_table import is_csv
-from inverse_dynamics.recordings.joint_trajectories import JointTrajectory, read_joint_trajectories
+from inverse_dynamics.recordings.joint_trajectories import (
+    MESSAGE_TYPE,
+    WRENCH_TYPE,
+    JointTrajectory,
+    read_joint_trajectories,
+)
 from inverse_dynamics.recordings.log_format import LogFormat
 from inverse_dynamics.recordings.table_logs import add_derivatives, read_motion
 from inverse_dynamics.recordings.tables import open_table
@@ -131,7 +136,8 @@ def trajectory_torques(
     Parameters
     ----------
     path
-        A recording of trajectory_msgs/JointTrajectory, or a table; efforts aren't needed.
+        A recording of trajectory_msgs/JointTrajectory or control_msgs/JointWrenchTrajectory, or a
+        table; efforts aren't needed. Torques include those that exert the wrenches.
     robot
         As evaluate() takes it.
     topic
@@ -154,12 +160,15 @@ def trajectory_torques(
         state, notes = _states_of_table(table, joints, LogFormat.of(robot), progress)
         states = [state]
     else:
-        trajectories = read_joint_trajectories(path, topic, progress)
+        types = (MESSAGE_TYPE, WRENCH_TYPE)
+        trajectories = read_joint_trajectories(path, topic, progress, types)
         states = [_states_of_message(trajectory, joints) for trajectory in trajectories]
     if not any(len(time) for time, *_ in states):
         raise BagError(f"{path}: expected points of a trajectory, got none")
     progress("computing", 0, len(states))
     torques = [solver.torques(*state) if len(time) else state[0] for time, state, _ in states]
+    for k, trajectory in enumerate(trajectories):
+        _add_wrenches(trajectory, solver, states[k][1][0], torques[k])
     for number, computed in enumerate(torques, 1):
         where = f"{path}, trajectory {number}"
         check_torques(where, list(solver.joint_names), list(arm.units), computed)
@@ -249,3 +258,22 @@ def _states_of_message(trajectory: JointTrajectory, joints: Sequence[str]) -> St
         )
     q, qd, qdd = state
     return time, state, Plan(trajectory.where, "point", q, time, qd, qdd)
+
+
+def _add_wrenches(trajectory: JointTrajectory, solver: Solver, q: Floats, torques: Floats) -> None:
+    """Add to torques (N, n) those that exert the wrenches of a trajectory.
+
+    A wrench acts on the link in whose frame it is, at its origin; in a frame that doesn't move, on the tip.
+    """
+    frames, wrenches = trajectory.wrenches()
+    for frame in set(frames) - {""}:
+        at = [k for k, of_point in enumerate(frames) if of_point == frame]
+        try:
+            J, (R, p) = solver.jacobian(q[at], frame=frame), solver.pose(q[at], frame=frame)
+        except SolverError as error:
+            raise BagError(f"{trajectory.where}, point {at[0] + 1}: wrench: {error}") from error
+        force, torque = (np.einsum("kij,kj->ki", R, w) for w in np.split(wrenches[at], 2, axis=1))
+        if not J.any():
+            J = solver.jacobian(q[at])
+            torque += np.cross(p - solver.pose(q[at])[1], force)
+        torques[at] += np.einsum("kij,ki->kj", J, np.hstack([force, torque]))

@@ -28,6 +28,8 @@ examples:
   ids torques planned --robot panda_real --no-friction --out filled
       for a robot whose controller compensates friction itself
 
+Points of control_msgs/JointWrenchTrajectory state what the robot exerts on its surroundings, at the link that frame_id
+names, or in the axes and about the origin of a frame at rest at the tip; efforts include what that needs.
 Each point needs positions, velocities and accelerations, and a later time than the one before. Notes name what
 contradicts itself, such as zero velocities in a motion, degrees and jumps, and limits that are passed. An output
 directory also holds torques.json: how efforts were computed, energy and peak power, and the peak of each joint. The
@@ -41,8 +43,8 @@ def declare(options: Options) -> None:
         "trajectory",
         metavar="TRAJECTORY",
         type=Path,
-        help="rosbag2 recording of trajectory_msgs/JointTrajectory, or a table of text (.csv, .tsv, .txt, .dat, .log, "
-        ".asc)",
+        help="rosbag2 recording of trajectory_msgs/JointTrajectory or control_msgs/JointWrenchTrajectory, or a table "
+        "of text (.csv, .tsv, .txt, .dat, .log, .asc)",
     )
     options.robot()
     options.output(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Trajectories (trajectory_msgs/JointTrajectory) of rosbag2 recordings.
+"""Trajectories (trajectory_msgs/JointTrajectory, control_msgs/JointWrenchTrajectory) of rosbag2 recordings.
 
 A message is a trajectory of N points. As a recording, a point is a sample: one message with all
 points, or messages of one point each, joined by their stamps. A point's stamp is that of its
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.recordings.joint_log import Clock, Storage
 
 MESSAGE_TYPE = "trajectory_msgs/msg/JointTrajectory"
+WRENCH_TYPE = "control_msgs/msg/JointWrenchTrajectory"  # in ROS 2 from kilted on
 FIELDS = ("positions", "velocities", "accelerations", "effort")
 
 _EFFORT_NEEDED = (
@@ -52,14 +53,38 @@ class JointTrajectory:
     stamp: int  # ns, of the header
     received: int  # ns
     time_from_start: Integers  # (N,) ns
+    message_type: str
     message: Any  # as decoded
+    points: list[Any]  # (N,) of it: trajectory_msgs/JointTrajectoryPoint
 
     def __len__(self) -> int:
         return len(self.time_from_start)
 
     def has(self, field: str) -> bool:
         """Whether any point has numbers in this one of FIELDS."""
-        return any(len(getattr(point, field)) for point in self.message.points)
+        return any(len(getattr(point, field)) for point in self.points)
+
+    def wrenches(self) -> tuple[list[str], Floats]:
+        """Frame of each point, and (N, 6) force [N] and torque [N m] that the robot exerts, in it.
+
+        No frame where there is no wrench. Raises BagError: a frame or a number is missing.
+        """
+        frames, values = [""] * len(self), np.zeros((len(self), 6))
+        if self.message_type != WRENCH_TYPE:
+            return frames, values
+        for k, point in enumerate(self.message.points):
+            framed = point.wrench
+            force, torque = framed.wrench.force, framed.wrench.torque
+            values[k] = force.x, force.y, force.z, torque.x, torque.y, torque.z
+            if not values[k].any():
+                continue
+            frames[k] = framed.frame_id
+            if not framed.frame_id or not np.isfinite(values[k]).all():
+                raise BagError(
+                    f"{self.where}, point {k + 1}: wrench: expected six finite numbers and a frame_id, got "
+                    f"{values[k].tolist()} in '{framed.frame_id}'; set frame_id to the link that exerts it"
+                )
+        return frames, values
 
     def numbers(self, field: str, joints: Sequence[str], reason: str = "") -> Floats:
         """(N, len(joints)) of one of FIELDS. Raises BagError where a number is missing."""
@@ -74,7 +99,7 @@ class JointTrajectory:
             raise BagError(f"{self.where}: expected each joint once, got {', '.join(names)}")
         columns = [names.index(joint) for joint in joints]
         values = np.empty((len(self), len(joints)))
-        for k, point in enumerate(self.message.points):
+        for k, point in enumerate(self.points):
             row = getattr(point, field)
             if len(row) != len(names):
                 without = f": none for joint {names[len(row)]}" if len(row) < len(names) else ""
@@ -94,32 +119,54 @@ class JointTrajectory:
 
 
 def read_joint_trajectories(
-    path: Path, topic: str = "", progress: Progress = no_progress
+    path: Path,
+    topic: str = "",
+    progress: Progress = no_progress,
+    types: Sequence[str] = (MESSAGE_TYPE,),
 ) -> list[JointTrajectory]:
-    """Messages of one topic; none given: of the only one with trajectories. Raises BagError."""
+    """Messages of one topic; none given: of the only one with trajectories. Raises BagError.
+
+    types: MESSAGE_TYPE, WRENCH_TYPE.
+    """
     recording = Recording(path)
-    topic = recording.topic_of_type(MESSAGE_TYPE, topic)
+    there = {
+        name: kind
+        for name, kind, count in recording.topics()
+        if kind in types and (count or name == topic)
+    }
+    if not topic and len(set(there.values())) > 1:
+        raise BagError(
+            f"{path}: expected one topic with trajectories, got {', '.join(there)}; name it with --topic"
+        )
+    message_type = there.get(topic, next(iter(there.values()), types[0]))
+    topic = recording.topic_of_type(message_type, topic)
     where = f"{path}: {topic}"
     found: list[JointTrajectory] = []
     for _, received, messages in recording.messages(topic):
         for raw, stamp in zip(messages, received, strict=True):
-            found.append(decode(raw, f"{where}, message {len(found) + 1}", topic, stamp))
+            number = f"{where}, message {len(found) + 1}"
+            found.append(decode(raw, number, topic, stamp, message_type))
         progress("reading", len(found), recording.expected_messages(topic))
     if not found:
         raise BagError(f"{where}: expected trajectories, got no message; record it again")
     return found
 
 
-def decode(raw: bytes, where: str, topic: str, received: int) -> JointTrajectory:
+def decode(
+    raw: bytes, where: str, topic: str, received: int, message_type: str = MESSAGE_TYPE
+) -> JointTrajectory:
     """Decode a message. Raises BagError."""
     try:
-        message = _deserialized(raw)
+        message = _deserialized(raw, message_type)
     except Exception as error:  # whatever a decoder makes of a damaged message
         raise BagError(
-            f"{where}: can't be decoded as {MESSAGE_TYPE} ({error_text(error)}): the recording is "
+            f"{where}: can't be decoded as {message_type} ({error_text(error)}): the recording is "
             "damaged; copy or record it again"
         ) from error
-    times = [_nanoseconds(point.time_from_start) for point in message.points]
+    points = message.points
+    if message_type == WRENCH_TYPE:
+        points = [point.point for point in points]
+    times = [_nanoseconds(point.time_from_start) for point in points]
     return JointTrajectory(
         where=where,
         topic=topic,
@@ -128,11 +175,13 @@ def decode(raw: bytes, where: str, topic: str, received: int) -> JointTrajectory
         stamp=_nanoseconds(message.header.stamp),
         received=received,
         time_from_start=np.array(times, dtype=np.int64),
+        message_type=message_type,
         message=message,
+        points=points,
     )
 
 
-def _deserialized(raw: bytes) -> Any:
+def _deserialized(raw: bytes, message_type: str) -> Any:
     """The message that bytes begin with.
 
     Serializers append bytes of no meaning. ROS's own readers ignore what follows a message; rosbags'
@@ -140,7 +189,7 @@ def _deserialized(raw: bytes) -> Any:
     """
     if raw[:2] not in (b"\0\0", b"\0\1"):
         raise ValueError("it doesn't begin with the encapsulation of plain CDR")
-    definition = typestore().get_msgdef(MESSAGE_TYPE)
+    definition = typestore().get_msgdef(message_type)
     read = definition.deserialize_cdr_le if raw[1] else definition.deserialize_cdr_be
     message, _ = read(raw[4:], 0, definition.cls, typestore())
     return message
@@ -209,10 +258,22 @@ def _nanoseconds(time: Any) -> int:
     return int(time.sec) * 10**9 + int(time.nanosec)
 
 
+_WRENCH_DEFINITIONS = {
+    "control_msgs/msg/WrenchFramed": "string frame_id\ngeometry_msgs/Wrench wrench",
+    "control_msgs/msg/JointWrenchTrajectoryPoint": "trajectory_msgs/JointTrajectoryPoint point\n"
+    "control_msgs/WrenchFramed wrench",
+    WRENCH_TYPE: "std_msgs/Header header\nstring[] joint_names\n"
+    "control_msgs/JointWrenchTrajectoryPoint[] points",
+}
+
+
 @cache
 def typestore() -> Typestore:
-    """Definitions of messages. That of JointTrajectory is the same in every ROS 2 release."""
+    """Definitions of messages. Those of trajectories are the same in every ROS 2 release."""
     require("a recording of trajectories", "rosbags")
-    from rosbags.typesys import Stores, get_typestore
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-    return get_typestore(Stores.ROS2_HUMBLE)
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    for name, text in _WRENCH_DEFINITIONS.items():
+        store.register(get_types_from_msg(text, name))
+    return store

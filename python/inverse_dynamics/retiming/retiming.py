@@ -416,7 +416,7 @@ def _waypoints_of_file(path: Path, arm: Arm, topic: str) -> Plan:
         assert q is not None
         return Plan(f"{path}", "row", q, motion.time if timed else None, qd, qdd)
     trajectories = of_one_motion(read_joint_trajectories(path, topic), "record the path alone")
-    points = [point for trajectory in trajectories for point in trajectory.message.points]
+    points = [point for trajectory in trajectories for point in trajectory.points]
 
     def joined(field: str) -> Floats:
         return np.concatenate([t.numbers(field, arm.recorded_names) for t in trajectories])

@@ -29,6 +29,7 @@ from rosbags.rosbag2.writer import zstd
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from inverse_dynamics import (
+    Solver,
     cli,
     load_robot,
     read_recording,
@@ -479,3 +480,85 @@ def test_what_can_not_be_read_is_not_told_as_what_can_not_be_written(tmp_path, r
         with pytest.raises(BagError, match=f"^{path}: {expected}"):
             write_trajectory_torques(trajectory_torques(path, robot), tmp_path / "filled")
         assert not (tmp_path / "filled").exists()
+
+
+WRENCH_TRAJECTORY = "control_msgs/msg/JointWrenchTrajectory"
+DOWN = [3.0, -2.0, -20.0, 0.5, 0.0, 1.0]
+
+
+def write_wrenches(path, wrenches):
+    """wrenches: (frame, six numbers) of each point."""
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    for name, text in {
+        "WrenchFramed": "string frame_id\ngeometry_msgs/Wrench wrench",
+        "JointWrenchTrajectoryPoint": "trajectory_msgs/JointTrajectoryPoint point\nWrenchFramed wrench",
+        "JointWrenchTrajectory": "std_msgs/Header header\nstring[] joint_names\nJointWrenchTrajectoryPoint[] points",
+    }.items():
+        store.register(get_types_from_msg(text, f"control_msgs/msg/{name}"))
+    plan, types = trajectory(JOINTS, points_of_motion()[: len(wrenches)]), store.types
+    points = []
+    for point, (frame, numbers) in zip(plan.points, wrenches, strict=True):
+        vectors = [types["geometry_msgs/msg/Vector3"](*v) for v in (numbers[:3], numbers[3:])]
+        framed = types["control_msgs/msg/WrenchFramed"](
+            frame, types["geometry_msgs/msg/Wrench"](*vectors)
+        )
+        points.append(types["control_msgs/msg/JointWrenchTrajectoryPoint"](point, framed))
+    message = types[WRENCH_TRAJECTORY](plan.header, plan.joint_names, points)
+    with Writer(path, version=9) as writer:
+        topic = writer.add_connection(TOPIC, WRENCH_TRAJECTORY, typestore=store)
+        writer.write(topic, 1, store.serialize_cdr(message, WRENCH_TRAJECTORY))
+    return store
+
+
+def test_efforts_of_wrenches_are_those_of_the_tip(tmp_path, torques, robot):
+    wrenches = [("tool0", DOWN), ("", [0] * 6), ("base_link", DOWN), ("tool0", [0, 0, 0, 0, 0, 1])]
+    store = write_wrenches(tmp_path / "planned", wrenches)
+    result = trajectory_torques(tmp_path / "planned", robot)
+    write_trajectory_torques(result, tmp_path / "filled")
+
+    solver, q = Solver(robot), motion()[0][:4]
+    p = solver.pose(q[2])[1]
+    about_tip = [*DOWN[:3], *(DOWN[3:] - np.cross(p, DOWN[:3]))]
+    expected = np.array(torques[:4])
+    expected[0] += solver.external_torques(q[0], DOWN, frame="tip")
+    expected[2] += solver.external_torques(q[2], about_tip, frame="root")
+    expected[3] += solver.external_torques(q[3], wrenches[3][1], frame="tip")
+    np.testing.assert_allclose(result.torques[0], expected, rtol=0, atol=1e-10)  # rounding
+    ((_, _, raw),) = read_messages(tmp_path / "filled")
+    filled = store.deserialize_cdr(raw, WRENCH_TRAJECTORY).points
+    np.testing.assert_array_equal([point.point.effort for point in filled], result.torques[0])
+    assert [point.wrench.frame_id for point in filled] == [frame for frame, _ in wrenches]
+    assert filled[0].wrench.wrench.force.z == -20
+
+
+@pytest.mark.parametrize(
+    ("frame", "wrench", "problem"),
+    [
+        ("", DOWN, "point 2: wrench: expected six finite numbers and a frame_id, got .* in ''"),
+        ("tool0", [np.nan] * 6, "point 2: wrench: expected six finite numbers"),
+        ("tool1", DOWN, "point 2: wrench: .*expected a link or joint .*did you mean 'tool0'"),
+    ],
+)
+def test_a_wrench_that_is_not_understood_is_refused(tmp_path, robot, frame, wrench, problem):
+    write_wrenches(tmp_path / "planned", [("tool0", DOWN), (frame, wrench)])
+    with pytest.raises(BagError, match=problem):
+        trajectory_torques(tmp_path / "planned", robot)
+
+
+def test_trajectories_of_two_types_are_told_apart(tmp_path, robot):
+    store = write_wrenches(tmp_path / "wrenches", [("tool0", DOWN)])
+    plan = trajectory(JOINTS, points_of_motion()[:1])
+    ((_, _, raw),) = read_messages(tmp_path / "wrenches")
+    with Writer(tmp_path / "both", version=9) as writer:
+        for topic, kind, message in (
+            ("/a", TRAJECTORY, STORE.serialize_cdr(plan, TRAJECTORY)),
+            ("/b", WRENCH_TRAJECTORY, raw),
+        ):
+            writer.write(writer.add_connection(topic, kind, typestore=store), 1, message)
+    with pytest.raises(BagError, match="expected one topic with trajectories, got /a, /b; name it"):
+        trajectory_torques(tmp_path / "both", robot)
+    without, with_wrench = (
+        trajectory_torques(tmp_path / "both", robot, topic=topic).torques[0]
+        for topic in ("/a", "/b")
+    )
+    assert np.abs(with_wrench - without).max() > 1
