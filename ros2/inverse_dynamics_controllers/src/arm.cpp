@@ -132,8 +132,12 @@ FrictionSource frictionSource(const std::string& name) {
 }  // namespace
 
 std::string Setup::tip() const {
+  const std::vector<std::string>& tips = arm.solver->tipNames();
+  if (!tips.empty()) return tips.front();
   rclcpp::Parameter tip;
-  return node->get_parameter("ids.tip", tip) ? tip.value_to_string() : "";
+  if (!node->get_parameter("ids.tip", tip)) return "";
+  return tip.get_type() == rclcpp::PARAMETER_STRING_ARRAY ? joined(tip.as_string_array())
+                                                          : tip.value_to_string();
 }
 
 ArmSource::ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node, Use use)

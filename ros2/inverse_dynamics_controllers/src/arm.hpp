@@ -39,7 +39,7 @@ struct Setup {
   double period;      ///< of the control loop [s]
   bool has_fallback;  ///< whether the manager starts other controllers when this one fails
 
-  /// The parameter `ids.tip`; empty: not set.
+  /// The tip that the parameter `ids.tip` names, the first of several; empty: not set.
   std::string tip() const;
 };
 

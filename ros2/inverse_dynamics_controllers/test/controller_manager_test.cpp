@@ -10,6 +10,7 @@
 #include <control_msgs/msg/joint_trajectory_controller_state.hpp>
 #include <controller_manager/controller_manager.hpp>
 #include <controller_manager_msgs/srv/switch_controller.hpp>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -64,6 +65,7 @@ std::string robot(const std::string& arms, const std::string& interfaces) {
 double weight(double mass, double angle) { return mass * kGravity * kLength * std::sin(angle); }
 
 constexpr const char* kDamping = "    damping: {values: [1.0]}\n";
+const char* const kBoth = "both";  // arms, by one controller
 
 class TwoArms : public testing::Test {
  protected:
@@ -110,8 +112,11 @@ class TwoArms : public testing::Test {
                         const std::string& controller = "GravityCompensationController") {
     std::ofstream(file_)
         << "/**/" << arm << name << ":\n  ros__parameters:\n"
-        << "    plugin_name: kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL\n"
-        << "    ids: {root: base, tip: " << arm << "_rod}\n"
+        << (arm == kBoth ? "    plugin_name: rigid_body_inverse_dynamics_solver/"
+                           "InverseDynamicsSolverRigidBody\n"
+                         : "    plugin_name: kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL\n"
+                           "    ids: {root: base, tip: " +
+                               arm + "_rod}\n")
         << more;
     manager_->set_parameter({arm + name + ".params_file", file_.string()});
     if (!manager_->load_controller(arm + name, type(controller))) return return_type::ERROR;
@@ -154,10 +159,11 @@ class TwoArms : public testing::Test {
     }
     EXPECT_NEAR(last, number, 1e-4) << topic;
   }
+  template <std::size_t Joint = 0>
   void expectEffort(double effort, const std::string& controller) {
     expect<JointTrajectoryControllerState>(
         effort, controller + "/controller_state",
-        [](const JointTrajectoryControllerState& state) { return state.output.effort.at(0); });
+        [](const JointTrajectoryControllerState& state) { return state.output.effort.at(Joint); });
   }
   void expectExternal(double torque, const std::string& broadcaster) {
     expect<JointState>(torque, broadcaster + "/external_torques",
@@ -192,6 +198,20 @@ TEST_F(TwoArms, EachControllerServesItsOwn) {
   expectEffort(weight(2.0, 0.5), "/left");
   expectEffort(weight(4.0, -1.0), "/right");
 }
+
+class BothArms : public TwoArms, public testing::WithParamInterface<const char*> {};
+
+TEST_P(BothArms, OneControllerServesThemWithOneSolver) {
+  ASSERT_EQ(
+      configure(kBoth, std::string(kDamping) + "    ids: {root: base, tip: " + GetParam() + "}\n"),
+      return_type::OK);
+  ASSERT_EQ(activate({kBoth}), return_type::OK);
+  expectEffort(weight(2.0, 0.5), "/both");
+  expectEffort<1>(weight(4.0, -1.0), "/both");
+}
+
+INSTANTIATE_TEST_SUITE_P(Tips, BothArms,
+                         testing::Values("'left_rod,right_rod'", "[left_rod, right_rod]", "'*'"));
 
 // Joints and controllers have the same names in both. Broadcasters expect a load that isn't there.
 TEST_F(TwoArms, ControllersAndBroadcastersOfANamespaceServeItsOwn) {

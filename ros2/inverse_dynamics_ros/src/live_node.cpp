@@ -132,7 +132,7 @@ class LiveNode::Implementation {
     options.longest_gap = params_.longest_gap;
     auto live = std::make_unique<LiveTorques>(solver, options);
     useRobot({solver, options.joints, robot.plugin, robot_.rootLink(robot_description),
-              robot_.tipLink(robot_description),
+              robot_.tipLink(robot_description, solver->tipNames()),
               options.effort.meaning == inverse_dynamics_evaluation::kTorqueWithoutGravity});
     live_ = std::move(live);
     torques_.name = residual_.name = options.joints;

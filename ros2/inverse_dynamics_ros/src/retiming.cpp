@@ -43,7 +43,7 @@ Retiming::Retiming(const NodeRobot& robot, const std::string& description,
                    const retime::Params& params)
     : solver_(robot.makeSolver(description)),
       load_(solver_, {}, 0.0),
-      tip_(robot.tipLink(description)),
+      tip_(robot.tipLink(description, solver_->tipNames())),
       joints_(
           inverse_dynamics_evaluation::recordedNames(robot.configuration(), solver_->jointNames())),
       deviation_(params.deviation),

@@ -3,6 +3,7 @@
 #include "robot_parameters.hpp"
 
 #include <chain_dynamics/robot_description.hpp>
+#include <chain_dynamics/text.hpp>
 #include <cstddef>
 #include <fstream>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
@@ -12,7 +13,10 @@
 #include <rcl_interfaces/msg/parameter_descriptor.hpp>
 #include <rclcpp/parameter.hpp>
 #include <sstream>
+#include <string>
 #include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "user_error.hpp"
 
@@ -131,6 +135,10 @@ std::shared_ptr<InverseDynamicsSolver> NodeRobot::makeSolver(const std::string& 
 }
 
 std::string NodeRobot::statedLink(const std::string& parameter) const {
+  const auto value = solver_parameters_.find(kSolverNamespace + "." + parameter);
+  if (value && std::holds_alternative<std::vector<std::string>>(*value)) {
+    return chain_dynamics::joined(std::get<std::vector<std::string>>(*value));
+  }
   return solver_parameters_.get<std::string>(kSolverNamespace + "." + parameter).value_or("");
 }
 
@@ -145,7 +153,9 @@ std::string NodeRobot::rootLink(const std::string& description) const {
   return robot ? robot->links[robot->root].name : stated;
 }
 
-std::string NodeRobot::tipLink(const std::string& description) const {
+std::string NodeRobot::tipLink(const std::string& description,
+                               const std::vector<std::string>& tips) const {
+  if (!tips.empty()) return tips.front();
   const std::string stated = statedLink("tip");
   const auto robot = stated.empty() ? described(description) : std::nullopt;
   if (!robot) return stated;

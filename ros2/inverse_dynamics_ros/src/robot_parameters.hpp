@@ -67,8 +67,11 @@ class NodeRobot {
 
   /// Names of the first and the last link of the chain: as stated, else the description's root and
   /// its only leaf; empty: not known.
+  ///
+  /// @param tips  tipNames() of the solver: of a tree the first is meant.
   std::string rootLink(const std::string& description) const;
-  std::string tipLink(const std::string& description) const;
+  std::string tipLink(const std::string& description,
+                      const std::vector<std::string>& tips = {}) const;
 
  private:
   std::string statedLink(const std::string& parameter) const;

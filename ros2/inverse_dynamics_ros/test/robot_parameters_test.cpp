@@ -103,6 +103,10 @@ TEST_F(RobotParameters, NameTheEndsOfTheChain) {
       {"robot", file()}, {"ids.root", std::string("floor")}, {"ids.tip", std::string("hand")}});
   EXPECT_EQ(stated.rootLink(robot.description()), "floor");
   EXPECT_EQ(stated.tipLink(robot.description()), "hand");
+  EXPECT_EQ(stated.tipLink(robot.description(), {"left", "right"}), "left");
+  const NodeRobot listed(
+      Parameters{{"robot", file()}, {"ids.tip", std::vector<std::string>{"hand"}}});
+  EXPECT_EQ(listed.tipLink(robot.description()), "hand");
   const NodeRobot of_a_model(Parameters{{"plugin_name", std::string("package/Class")}});
   EXPECT_EQ(of_a_model.rootLink(""), "");
   EXPECT_EQ(of_a_model.tipLink("<robot"), "");
