@@ -44,6 +44,7 @@ template <class Interfaces>
 std::vector<std::size_t> find(const Interfaces& interfaces, const std::vector<std::string>& names,
                               const char* kind) {
   std::vector<std::size_t> places;
+  places.reserve(names.size());
   for (const std::string& name : names) places.push_back(find(interfaces, name, kind));
   return places;
 }

@@ -70,6 +70,7 @@ StatePublisher::StatePublisher(const std::shared_ptr<rclcpp_lifecycle::Lifecycle
   if (!(rate > 0)) return;
   JointTrajectoryControllerState message;
   message.joint_names = joints;
+  // NOLINTNEXTLINE(modernize-make-shared): an aggregate that can't be moved
   outbox_.reset(new Outbox{LatestValue<Cycle>(Cycle(static_cast<Eigen::Index>(joints.size()))),
                            types, std::move(message),
                            node->create_publisher<JointTrajectoryControllerState>(

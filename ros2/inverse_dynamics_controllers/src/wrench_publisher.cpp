@@ -87,6 +87,7 @@ WrenchPublisher::WrenchPublisher(const std::shared_ptr<rclcpp_lifecycle::Lifecyc
   JointState torques;
   torques.name = joints;
   const rclcpp::SystemDefaultsQoS qos;
+  // NOLINTNEXTLINE(modernize-make-shared): an aggregate that can't be moved
   outbox_.reset(new Outbox{LatestValue<Estimate>(first), std::move(wrench), std::move(torques),
                            node->create_publisher<WrenchStamped>("~/wrench", qos),
                            node->create_publisher<JointState>("~/external_torques", qos),

@@ -51,7 +51,7 @@ std::string errorTable(const Evaluation& evaluation, const std::vector<std::stri
   const std::vector<JointMetrics>& errors = evaluation.errors;
   if (errors.empty()) return "  no efforts are recorded: there is nothing to compare with\n";
   const auto& kept = evaluation.table->kept;
-  const auto ofKept = [&kept](double rmse) { return kept.all() ? "" : value(rmse); };
+  const auto of_kept = [&kept](double rmse) { return kept.all() ? "" : value(rmse); };
   std::size_t width = std::string("joint").size();
   for (const std::string& name : evaluation.joint_names) width = std::max(width, name.size());
   std::string text = lineOf(width, "joint", "unit",
@@ -61,14 +61,14 @@ std::string errorTable(const Evaluation& evaluation, const std::vector<std::stri
     text += lineOf(width, evaluation.joint_names[j], units[j],
                    {value(error.mae), value(error.rmse), formatted("%.2f %%", 100 * error.nrmse),
                     value(error.bias), formatted("%.4f", error.r2),
-                    ofKept(evaluation.errors_of_kept[j].rmse)});
+                    of_kept(evaluation.errors_of_kept[j].rmse)});
   }
   if (units.size() > 1 && std::count(units.begin(), units.end(), units[0]) ==
                               static_cast<std::ptrdiff_t>(units.size())) {
     text += lineOf(
         width, "mean", units[0],
         {value(meanOf(errors, &JointMetrics::mae)), value(meanOf(errors, &JointMetrics::rmse)), "",
-         "", "", ofKept(meanOf(evaluation.errors_of_kept, &JointMetrics::rmse))});
+         "", "", of_kept(meanOf(evaluation.errors_of_kept, &JointMetrics::rmse))});
   }
   if (kept.all()) return text;
   return text + "* over the " + std::to_string(kept.count()) + " valid samples of " +

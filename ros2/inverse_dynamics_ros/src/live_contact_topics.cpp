@@ -62,9 +62,9 @@ void readFile(const ContactFile& file, const Parameters& given,
 }  // namespace
 
 LiveContactTopics::LiveContactTopics(rclcpp::Node& node,
-                                     live_node::Params::ExternalTorques parameters,
+                                     const live_node::Params::ExternalTorques& parameters,
                                      Parameters given)
-    : logger_(node.get_logger()), parameters_(std::move(parameters)), given_(std::move(given)) {
+    : logger_(node.get_logger()), parameters_(parameters), given_(std::move(given)) {
   using Options = rclcpp::PublisherOptions;
   torques_publisher_ = node.create_publisher<sensor_msgs::msg::JointState>(
       "~/external_torques", rclcpp::QoS(10), overridable<Options>());

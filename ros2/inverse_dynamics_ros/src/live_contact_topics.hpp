@@ -28,7 +28,7 @@ namespace inverse_dynamics_ros {
 class LiveContactTopics {
  public:
   /// @param given  parameters that the user has set; they take precedence over the file of contacts.
-  LiveContactTopics(rclcpp::Node& node, live_node::Params::ExternalTorques parameters,
+  LiveContactTopics(rclcpp::Node& node, const live_node::Params::ExternalTorques& parameters,
                     inverse_dynamics_solver::Parameters given);
 
   /// An estimator for a robot.

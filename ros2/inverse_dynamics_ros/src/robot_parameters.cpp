@@ -156,7 +156,7 @@ std::string NodeRobot::rootLink(const std::string& description) const {
 std::string NodeRobot::tipLink(const std::string& description,
                                const std::vector<std::string>& tips) const {
   if (!tips.empty()) return tips.front();
-  const std::string stated = statedLink("tip");
+  std::string stated = statedLink("tip");
   const auto robot = stated.empty() ? described(description) : std::nullopt;
   if (!robot) return stated;
   const std::size_t root = robot->linkIndex(rootLink(description));

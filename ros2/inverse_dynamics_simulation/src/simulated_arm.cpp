@@ -63,6 +63,7 @@ void requireEffort(const hardware_interface::ComponentInfo& joint) {
     return;
   }
   std::vector<std::string> names;
+  names.reserve(joint.command_interfaces.size());
   for (const auto& command : joint.command_interfaces) names.push_back(command.name);
   throw std::invalid_argument("joint " + joint.name +
                               ": command_interface: expected effort alone, got " +
@@ -119,6 +120,7 @@ std::vector<hardware_interface::StateInterface> SimulatedArm::export_state_inter
 
 std::vector<hardware_interface::CommandInterface> SimulatedArm::export_command_interfaces() {
   std::vector<hardware_interface::CommandInterface> interfaces;
+  interfaces.reserve(joints_.size());
   for (Joint& joint : joints_) interfaces.emplace_back(joint.name, HW_IF_EFFORT, &joint.command);
   return interfaces;
 }
