@@ -184,7 +184,8 @@ void bindLawOptions(py::module_& module) {
   using O = LawOptions;
   bindOptions<2>(module, "LawOptions", "Options of every law; arrays (n,).", "",
                  limitField("effort_limit", &OutputLimits::effort, "N m"),
-                 Field{"damping", &O::damping, "N m s/rad; of the safe torque"},
+                 Field{"damping", &O::damping, "N m s/rad; of the safe torque; each joint alone"},
+                 Field{"damping_rate", &O::damping_rate, "1/s; the same, times H(q)"},
                  limitField("rate_limit", &OutputLimits::rate, "N m/s; empty: none"),
                  Field{"compensated", &O::compensated, "what the robot adds by itself"},
                  Field{"friction", &O::friction, "how friction is compensated"});

@@ -2,6 +2,8 @@
 #include "inverse_dynamics_control/control_law.hpp"
 
 #include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -16,17 +18,26 @@ ControlLaw::ControlLaw(std::shared_ptr<const InverseDynamicsSolver> solver,
     : model_(std::move(solver), options.compensated, law),
       friction_(options.friction, law),
       output_(options.limits, model_.jointNames(), law),
-      damping_(options.damping) {
+      damping_(options.damping),
+      damping_rate_(options.damping_rate) {
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model_.jointCount());
+  requireNumber(law + ": damping_rate", damping_rate_, Range::kNotNegative, "1/s");
+  if (damping_rate_ > 0 && !model_.inertiaIsPhysical()) {
+    throw inverse_dynamics_solver::InvalidParameterValueException(
+        law + ": damping_rate", "no damping", "zero, as inertiaIsPhysical() is false",
+        numberText(damping_rate_),
+        "take a solver made from the robot's URDF, or give the damping of each joint");
+  }
+  if (damping_rate_ > 0 && damping_.size() == 0) damping_ = zero;
   requireJointNumbers(law + ": damping", damping_, Range::kNotNegative, "N m s/rad",
                       model_.jointNames());
-  for (OwnedVector* vector : {&desired_, &f_, &error_, &gravity_, &gravity_candidate_}) {
-    *vector = Eigen::VectorXd::Zero(model_.jointCount());
-  }
+  for (OwnedVector* vector : {&desired_, &f_, &error_, &gravity_}) *vector = zero;
+  q_ = Eigen::VectorXd::Constant(zero.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
-void ControlLaw::start(const ConstVectorRef& effort, const ConstVectorRef& gravity) noexcept {
+void ControlLaw::start(const ConstVectorRef& effort, const ConstVectorRef& position) noexcept {
   start(effort);
-  if (check(gravity) == Status::kOk) gravity_ = gravity;
+  remember(position);
 }
 
 Status ControlLaw::hold(const JointState& state, double period, VectorRef tau) noexcept {
@@ -41,9 +52,12 @@ const OwnedVector& ControlLaw::positionError(const ConstVectorRef& q_ref,
   return error_;
 }
 
-bool ControlLaw::setDamping(const ConstVectorRef& damping) noexcept {
+bool ControlLaw::setDamping(const ConstVectorRef& damping, double rate) noexcept {
   if (!areJointNumbers(damping, Range::kNotNegative, jointCount())) return false;
+  if (!(rate >= 0) || !std::isfinite(rate) || (rate > 0 && !model_.inertiaIsPhysical()))
+    return false;
   damping_ = damping;
+  damping_rate_ = rate;
   return true;
 }
 
@@ -81,26 +95,43 @@ Status ControlLaw::refuse(Status why, const JointState& state, double period,
     tau.setZero();
     return why;
   }
-  // g(q) - damping qd, of what is known
-  const bool positioned = state.q.size() == n && state.q.allFinite();
-  if (positioned && !updateGravity(state.q) && why == Status::kOk) why = Status::kSolverFailed;
+  // g(q) - D qd, of what is known
+  if (!remember(state.q) && why == Status::kOk) why = Status::kSolverFailed;
   desired_ = gravity_;
-  for (Eigen::Index j = 0; state.qd.size() == n && j < n; ++j) {
-    if (std::isfinite(state.qd[j])) desired_[j] -= damping_[j] * state.qd[j];
+  if (state.qd.size() == n) {
+    for (Eigen::Index j = 0; j < n; ++j) error_[j] = std::isfinite(state.qd[j]) ? state.qd[j] : 0.0;
+    f_.setZero();
+    try {
+      damp(q_, error_, f_);
+    } catch (...) {  // a solver that fails
+      f_.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+    if (!f_.allFinite()) f_ = -damping_.cwiseProduct(error_);
+    desired_ += f_;
   }
   const Status limited = output_.apply(desired_, period, tau);
   return why == Status::kOk ? limited : why;
 }
 
-bool ControlLaw::updateGravity(const ConstVectorRef& q) noexcept {
+void ControlLaw::damp(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef tau) {
+  tau -= damping_.cwiseProduct(qd);
+  if (damping_rate_ > 0) tau.noalias() -= damping_rate_ * model_.inertia(q).lazyProduct(qd);
+}
+
+bool ControlLaw::remember(const ConstVectorRef& q) noexcept {
+  if (q.size() != jointCount()) return true;
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    if (std::isfinite(q[j])) q_[j] = q[j];
+  }
+  if (!q_.allFinite()) return true;
   try {
-    model_.gravity(q, gravity_candidate_);
-    if (!gravity_candidate_.allFinite()) return false;
-    gravity_ = gravity_candidate_;
-    return true;
-  } catch (...) {  // a solver that fails: gravity stays what it was
+    model_.gravity(q_, f_);
+  } catch (...) {  // gravity stays what it was
     return false;
   }
+  if (!f_.allFinite()) return false;
+  gravity_ = f_;
+  return true;
 }
 
 }  // namespace v2

@@ -23,7 +23,7 @@ Status GravityCompensation::update(const JointState& state, const ConstVectorRef
   }
   return output(state, period, tau, [&](VectorRef desired) {
     model().gravity(state.q, desired);
-    desired -= damping().cwiseProduct(state.qd);
+    damp(state.q, state.qd, desired);
     addFriction(state.q, state.qd, qd_reference, desired);
   });
 }

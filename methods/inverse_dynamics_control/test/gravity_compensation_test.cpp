@@ -64,18 +64,40 @@ TEST(GravityCompensation, ANonPhysicalInertiaMatrixIsWelcome) {
   EXPECT_NEAR(torqueOf(law, 0.0, 0.0), 9.81, kRounding);
 }
 
+// H qdd = -rate H qd, also while a joint's velocity is lost: what moves brakes, and shakes nothing.
+TEST(GravityCompensation, MotionsDecayAtTheRate) {
+  const auto solver = ChainSolver::make(twoBars());
+  LawOptions options = unlimited(2);
+  options.damping = {};
+  options.damping_rate = 5.0;
+  GravityCompensation law(solver, options);
+  const Eigen::VectorXd q = vec({0.3, -1.0}), qd = vec({0.5, -0.7});
+  const auto acceleration = [&](const Eigen::VectorXd& tau) -> Eigen::VectorXd {
+    return solver->getInertiaMatrix(q).inverse() * (tau - solver->getGravityVector(q));
+  };
+  Eigen::VectorXd tau(2);
+  ASSERT_EQ(law.update(stateOf(q, qd), kPeriod, tau), Status::kOk);
+  EXPECT_LT((acceleration(tau) + 5.0 * qd).norm(), kRounding);
+  ASSERT_EQ(law.hold(stateOf(q, qd), kPeriod, tau), Status::kOk);
+  EXPECT_LT((acceleration(tau) + 5.0 * qd).norm(), kRounding);
+  ASSERT_EQ(law.update(stateOf(vec({kNan, -1.0}), vec({kNan, -0.7})), kPeriod, tau),
+            Status::kStateNotFinite);
+  EXPECT_LT((acceleration(tau) + 5.0 * vec({0.0, -0.7})).norm(), kRounding);
+}
+
 TEST(GravityCompensation, DampingChangesWhileTheLoopRuns) {
   LawOptions options = unlimited(1);
   options.friction.source = FrictionSource::kNone;
   GravityCompensation law(Pendulum::make(), options);
   const JointState state = stateOf(vec({0.7}), vec({0.5}));
   Eigen::VectorXd tau(1);
-  EXPECT_TRUE(law.setDamping(vec({7.0})));
+  EXPECT_TRUE(law.setDamping(vec({6.0}), 2.0));  // H = 0.5 kg m^2
   ASSERT_EQ(law.update(state, 1e-3, tau), Status::kOk);
   EXPECT_NEAR(tau[0], 9.81 * std::cos(0.7) - 7.0 * 0.5, kRounding);
   for (const Eigen::VectorXd& bad : {vec({-1.0}), vec({kNan}), vec({kInfinity}), vec({1.0, 2.0})}) {
     EXPECT_FALSE(law.setDamping(bad));
   }
+  for (const double bad : {-1.0, kNan, kInfinity}) EXPECT_FALSE(law.setDamping(vec({1.0}), bad));
   ASSERT_EQ(law.hold(state, 1e-3, tau), Status::kOk);
   EXPECT_NEAR(tau[0], 9.81 * std::cos(0.7) - 7.0 * 0.5, kRounding);
 }

@@ -65,7 +65,8 @@ TEST(RealTime, NoCycleAllocatesLocksOrThrows) {
     EXPECT_EQ(allocations([&] { computed_torque.setGains(other_gains); }), 0);
     EXPECT_EQ(allocations([&] { pd.update(*state, reference, kPeriod, tau); }), 0);
     EXPECT_EQ(allocations([&] { pd.setGains(other_pd_gains); }), 0);
-    EXPECT_EQ(allocations([&] { pd.setDamping(other_pd_gains.Kd); }), 0);
+    EXPECT_EQ(allocations([&] { pd.setDamping(other_pd_gains.Kd, 5.0); }), 0);
+    EXPECT_EQ(allocations([&] { pd.hold(*state, kPeriod, tau); }), 0);
     EXPECT_EQ(allocations([&] { gravity_compensation.update(*state, kPeriod, tau); }), 0);
     EXPECT_EQ(allocations([&] { gravity_compensation.update(*state, effort, kPeriod, tau); }), 0);
     EXPECT_EQ(allocations([&] { feed_forward.update(*state, reference, effort, kPeriod, tau); }),

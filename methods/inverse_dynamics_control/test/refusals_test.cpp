@@ -194,11 +194,21 @@ TEST(Refusals, ALawTakesOverWithoutAPosition) {
   Eigen::VectorXd tau(1);
   ControlLaw& law = laws.gravity_compensation;
   EXPECT_EQ(laws.computed_torque.hold(stateOf(vec({0.2}), vec({0.5})), kPeriod, tau), Status::kOk);
-  law.start(tau, laws.computed_torque.gravity());
+  law.start(tau, laws.computed_torque.lastPosition());
   EXPECT_EQ(law.hold(stateOf(vec({kNan}), vec({0.5})), kPeriod, tau), Status::kStateNotFinite);
   EXPECT_NEAR(tau[0], gravityAt(0.2) - kDamping * 0.5, kRounding);
   EXPECT_EQ(law.hold(stateOf(vec({0.7}), vec({0.5})), kPeriod, tau), Status::kOk);
   EXPECT_NEAR(tau[0], gravityAt(0.7) - kDamping * 0.5, kRounding);
+}
+
+TEST(Refusals, AJointIsTakenWhereItWasLast) {
+  const auto solver = ChainSolver::make(twoBars());
+  GravityCompensation law(solver, unlimited(2));
+  const Eigen::VectorXd rest = vec({0.0, 0.0});
+  Eigen::VectorXd tau(2);
+  EXPECT_EQ(law.hold(stateOf(vec({0.3, -1.0}), rest), kPeriod, tau), Status::kOk);
+  EXPECT_EQ(law.hold(stateOf(vec({kNan, -0.2}), rest), kPeriod, tau), Status::kStateNotFinite);
+  EXPECT_LT((tau - solver->getGravityVector(vec({0.3, -0.2}))).norm(), kRounding);
 }
 
 TEST(Refusals, ALostJointLeavesTheOthersDamped) {
@@ -228,6 +238,24 @@ TEST(Refusals, MissingDampingIsRefused) {
   EXPECT_EQ(thrownBy([&] { GravityCompensation(Pendulum::make(), missing); }),
             "gravity compensation: damping: wrong size: expected 1 numbers [N m s/rad], got 0; "
             "give one for each of the joints pivot");
+}
+
+TEST(Refusals, DampingOfAllJointsNeedsAPhysicalInertia) {
+  LawOptions rate = options();
+  rate.damping = {};
+  rate.damping_rate = 5.0;
+  const auto solver = Pendulum::make();
+  EXPECT_NO_THROW(GravityCompensation(solver, rate));
+  solver->physical = false;
+  EXPECT_EQ(
+      thrownBy([&] { GravityCompensation(solver, rate); }),
+      "gravity compensation: damping_rate: no damping: expected zero, as "
+      "inertiaIsPhysical() is false, got 5; take a solver made from the robot's URDF, or give "
+      "the damping of each joint");
+  rate.damping_rate = -1.0;
+  EXPECT_EQ(thrownBy([&] { GravityCompensation(solver, rate); }),
+            "gravity compensation: damping_rate: wrong value: expected a finite number that isn't "
+            "negative [1/s], got -1; correct this number");
 }
 
 TEST(Status, RefusalsAreTold) {

@@ -224,7 +224,9 @@ LawOptions lawOptions(const Setup& setup, const std::string& friction_source) {
         "set it; .inf where the robot limits its effort by itself");
   }
   options.limits.rate = jointNumbers("limits.effort_rate", law.limits.effort_rate, arm.joints, {});
-  options.damping = changingDamping(setup).initial();
+  const Damping damping = changingDamping(setup).initial();
+  options.damping = damping.of_joints;
+  options.damping_rate = damping.rate;
   return options;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "changing_damping.hpp"
 
+#include <chain_dynamics/text.hpp>
 #include <cmath>
 #include <cstddef>
-#include <inverse_dynamics_control/damping.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>
 #include <vector>
@@ -17,7 +17,6 @@ using Numbers = std::vector<double>;
 
 const char* const kValues = "damping.values";
 const char* const kRate = "damping.rate";
-const char* const kPosture = "damping.posture";
 
 // The joints' numbers, finite and >= 0.
 Eigen::VectorXd givenDamping(const Numbers& values, const Arm& arm) {
@@ -32,10 +31,10 @@ Eigen::VectorXd givenDamping(const Numbers& values, const Arm& arm) {
   return damping;
 }
 
-Eigen::VectorXd dampingOf(const Setup& setup, const ParameterValues& parameters) {
+Damping dampingOf(const Setup& setup, const ParameterValues& parameters) {
   const Arm& arm = setup.arm;
   const auto values = parameters.at(kValues).get<Numbers>();
-  if (!values.empty()) return givenDamping(values, arm);
+  if (!values.empty()) return {givenDamping(values, arm), 0.0};
   if (!arm.solver->inertiaIsPhysical()) {
     throw InvalidParameterValueException(
         "parameter 'damping.values'", "not set", "a damping of each joint [N m s/rad]", "nothing",
@@ -43,18 +42,22 @@ Eigen::VectorXd dampingOf(const Setup& setup, const ParameterValues& parameters)
         "and that of " +
             setup.parameters.plugin_name + " is false");
   }
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.solver->jointCount());
-  return inverse_dynamics_control::dampingFor(
-      *arm.solver, jointNumbers(kPosture, parameters.at(kPosture).get<Numbers>(), arm.joints, zero),
-      parameters.at(kRate).get<double>(), setup.period);
+  const auto rate = parameters.at(kRate).get<double>();
+  if (rate * setup.period > 1.0) {
+    const auto text = [](double number) { return chain_dynamics::numberText(number) + " 1/s"; };
+    throw InvalidParameterValueException("parameter 'damping.rate'", "too fast",
+                                         "at most 1 / period, " + text(1.0 / setup.period),
+                                         text(rate), "lower it");
+  }
+  return {Eigen::VectorXd::Zero(arm.solver->jointCount()), rate};
 }
 
 }  // namespace
 
-ChangingGains<Eigen::VectorXd> changingDamping(const Setup& setup) {
+ChangingGains<Damping> changingDamping(const Setup& setup) {
   Setup kept = setup;
   kept.node.reset();  // it keeps what asks for the damping, and must not be kept by it
-  return {setup.node, {kValues, kRate, kPosture}, [kept](const ParameterValues& parameters) {
+  return {setup.node, {kValues, kRate}, [kept](const ParameterValues& parameters) {
             return dampingOf(kept, parameters);
           }};
 }

@@ -11,10 +11,16 @@
 
 namespace inverse_dynamics_controllers {
 
-/// N m s/rad (prismatic N s/m) of each joint: damping.values, or of damping.rate and .posture.
+/// As LawOptions has it.
+struct Damping {
+  Eigen::VectorXd of_joints;  ///< N m s/rad (prismatic N s/m): damping.values, or zeros
+  double rate;                ///< 1/s: damping.rate where there are no values, or zero
+};
+
+/// The damping of the parameters.
 ///
 /// Throws inverse_dynamics_solver::InvalidParameterValueException: wrong size or value, also those of
 /// a change, which is refused then. ParameterUninitializedException: no period where one is needed.
-ChangingGains<Eigen::VectorXd> changingDamping(const Setup& setup);
+ChangingGains<Damping> changingDamping(const Setup& setup);
 
 }  // namespace inverse_dynamics_controllers

@@ -99,7 +99,9 @@ class ControlLoop {
     using controller_interface::return_type;
     const double dt = static_cast<double>(period.nanoseconds()) * 1e-9;
     interfaces_.read(states, state_);
-    if (const Eigen::VectorXd* const changed = damping_.changed()) law.setDamping(*changed);
+    if (const Damping* const changed = damping_.changed()) {
+      law.setDamping(changed->of_joints, changed->rate);
+    }
     const auto status = fault_.latched() ? law.hold(state_, dt, tau_) : update(state_, dt, tau_);
     if (!interfaces_.write(tau_, commands)) report_->noteNotWritten();
 
@@ -123,7 +125,7 @@ class ControlLoop {
   void stop(const inverse_dynamics_control::ControlLaw& law, const StateInterfaces& states,
             CommandInterfaces& commands) noexcept {
     interfaces_.read(states, state_);
-    hand_over_->leave(state_, tau_, law.gravity());
+    hand_over_->leave(state_, tau_, law.lastPosition());
     tau_.setZero();
     interfaces_.write(tau_, commands);
   }
@@ -138,7 +140,7 @@ class ControlLoop {
   std::shared_ptr<UpdateReport> report_;
   rclcpp::TimerBase::SharedPtr timer_;
   CarriedBody carried_;
-  ChangingGains<Eigen::VectorXd> damping_;
+  ChangingGains<Damping> damping_;
   StatePublisher publisher_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What a controller commanded last, and the gravity that it knew, for the one that takes over.
+/// What a controller commanded last, and the positions that it knew, for the one that takes over.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@ namespace inverse_dynamics_controllers {
 class HandOver {
  public:
   explicit HandOver(Eigen::Index joints)
-      : state_(joints), tau_(Eigen::VectorXd::Zero(joints)), gravity_(tau_) {}
+      : state_(joints), tau_(Eigen::VectorXd::Zero(joints)), position_(tau_) {}
 
   /// @param robot  the same text for controllers that command the same joints in the same order.
   static std::shared_ptr<HandOver> of(const std::string& robot, Eigen::Index joints) {
@@ -31,10 +31,10 @@ class HandOver {
 
   /// A controller ends. Real time, as start(): no allocation, lock, exception or system call.
   void leave(const inverse_dynamics_control::JointState& state, const Eigen::VectorXd& tau,
-             const Eigen::VectorXd& gravity) noexcept {
+             const Eigen::VectorXd& position) noexcept {
     state_ = state;
     tau_ = tau;
-    gravity_ = gravity;
+    position_ = position;
     left_at_ = Clock::now();
   }
 
@@ -51,7 +51,7 @@ class HandOver {
       law.start();
       return false;
     }
-    law.start(tau_, gravity_);
+    law.start(tau_, position_);
     tau = tau_;
     return true;
   }
@@ -66,7 +66,7 @@ class HandOver {
   }
 
   inverse_dynamics_control::JointState state_;
-  Eigen::VectorXd tau_, gravity_;
+  Eigen::VectorXd tau_, position_;
   Clock::time_point left_at_{};  // the start of the computer
 };
 

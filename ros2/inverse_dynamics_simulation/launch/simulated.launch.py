@@ -122,7 +122,7 @@ def _spawner(config, *arguments):
 def _simulated(robot, config, payload):
     """The robot's URDF with a simulated hardware component of effort-controlled joints.
 
-    config: the parameter file whose posture is where the arm starts.
+    config: the parameter file, which says where the arm starts.
     """
     parameters = yaml.safe_load(config.read_text())
     law = parameters["feed_forward_controller"]["ros__parameters"]
@@ -135,7 +135,8 @@ def _simulated(robot, config, payload):
     ElementTree.SubElement(hardware, "plugin").text = plugin
     for name, value in {"payload": str(payload), "payload_link": law["ids"]["tip"]}.items():
         ElementTree.SubElement(hardware, "param", name=name).text = value
-    for name, position in zip(joints, law["damping"]["posture"], strict=True):
+    start = parameters["simulated_arm"]["ros__parameters"]["start"]
+    for name, position in zip(joints, start, strict=True):
         joint = ElementTree.SubElement(system, "joint", name=name)
         ElementTree.SubElement(joint, "command_interface", name="effort")
         state = ElementTree.SubElement(joint, "state_interface", name="position")

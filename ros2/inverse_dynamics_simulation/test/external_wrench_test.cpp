@@ -33,8 +33,6 @@ class Holder : public ControllerFixture<GravityCompensationController> {
     Parameters parameters = good();
     parameters["payload.mass"] = rclcpp::ParameterValue(kLoad);
     parameters.erase("damping.values");  // for 5 1/s
-    parameters["damping.posture"] =
-        rclcpp::ParameterValue(std::vector<double>{0.4, -1.2, 1.2, -1.0, -1.5, 0.3});
     hardware.set(arm.q(), arm.qd());
     return configure(parameters) && activate();
   }

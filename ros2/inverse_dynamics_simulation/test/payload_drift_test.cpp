@@ -93,8 +93,6 @@ class Guided : public ControllerFixture<GravityCompensationController> {
     parameters["ids.tip"] = rclcpp::ParameterValue(start.tip);
     parameters["payload.mass"] = rclcpp::ParameterValue(known);
     parameters.erase("damping.values");  // for 5 1/s
-    parameters["damping.posture"] =
-        rclcpp::ParameterValue(std::vector<double>(start.q.begin(), start.q.end()));
     parameters["update_rate"] = rclcpp::ParameterValue(500);
     return parameters;
   }

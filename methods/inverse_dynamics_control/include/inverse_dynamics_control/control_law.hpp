@@ -4,19 +4,19 @@
 ///
 ///     LawOptions options;
 ///     options.limits.effort = effort_limits;    // of the data sheet
-///     options.damping = damping;                // for the safe torque
+///     options.damping_rate = 5.0;               // 1/s; for the safe torque
 ///     ComputedTorque law(solver, gains, options);
 ///
 /// Whatever the input, the output is finite and within the limits. If the law's own torque isn't
 /// available, the output is the safe torque
 ///
-///     tau = g(q) - damping qd
+///     tau = g(q) - (damping + damping_rate H(q)) qd
 ///
-/// which carries the arm and brakes it, but holds no position. Gravity is that of the measured
-/// position; without one (a NaN, a solver that fails) that of the last cycle which had one, before
-/// the first that of start(), or zero. Joints without a finite velocity aren't damped. So a
-/// reference that is lost for good ends in an arm that stands and can be pushed, and a position that
-/// is lost for good needs brakes: see the status.
+/// which carries the arm and brakes it, but holds no position. A joint without a finite position is
+/// taken where it was last, also by start(); one without a finite velocity isn't damped. Gravity of a
+/// solver that fails is that of the last cycle; before any position it is zero. So a reference that is
+/// lost for good ends in an arm that stands and can be pushed, and a position that is lost for good
+/// needs brakes: see the status.
 #pragma once
 
 #include <memory>
@@ -40,9 +40,14 @@ struct LawOptions {
   /// Limits of the output.
   OutputLimits limits;
 
-  /// Damping of the safe torque and of hand guiding, n, finite, >= 0; N m s/rad (prismatic N s/m).
-  /// Required; dampingFor() [damping.hpp] makes it from one number.
+  /// Damping of the safe torque and of hand guiding, of each joint alone, n, finite, >= 0; N m s/rad
+  /// (prismatic N s/m). Required, unless damping_rate is above zero.
   OwnedVector damping;
+
+  /// The same of all joints together, `damping_rate H(q)`, finite, >= 0; 1/s: every motion decays at
+  /// this rate, in every posture, and no joint that brakes shakes another. Above zero for solvers whose
+  /// inertiaIsPhysical() is true; unstable from 2 / period on.
+  double damping_rate = 0.0;
 
   /// How the solver's friction is compensated, if it has any.
   FrictionOptions friction;
@@ -66,27 +71,27 @@ class ControlLaw {
 
   /// The same where a law takes over from another one.
   ///
-  /// @param gravity  n, finite; N m: gravity() of the other one, for the safe torque until a position
-  ///                 is valid. Another size, or NaN: as start(effort).
-  void start(const ConstVectorRef& effort, const ConstVectorRef& gravity) noexcept;
+  /// @param position  n; rad (prismatic m): lastPosition() of the other one, for the safe torque until
+  ///                  one is measured. Another size, or NaN: as start(effort).
+  void start(const ConstVectorRef& effort, const ConstVectorRef& position) noexcept;
 
-  /// Gravity of the safe torque, n: that of the last valid position; N m (prismatic N).
-  const OwnedVector& gravity() const noexcept { return gravity_; }
+  /// The last finite position of each joint, n; rad (prismatic m). NaN: none yet.
+  const OwnedVector& lastPosition() const noexcept { return q_; }
 
-  /// The safe torque instead of the law's: `tau = g(q) - damping qd`, within the limits.
+  /// The safe torque instead of the law's: `tau = g(q) - D qd`, within the limits.
   ///
   /// @param period    s since the last call of hold() or update(), for the rate limit.
   /// @param[out] tau  n; N m (prismatic N).
   /// @return kOk, kSaturated, kRateLimited, kNoPeriod, kStateNotFinite, kSolverFailed (gravity is
-  ///         that of the last cycle) or kWrongSize.
+  ///         that of the last cycle, damping that of each joint alone) or kWrongSize.
   Status hold(const JointState& state, double period, VectorRef tau) noexcept;
 
   /// Other damping from the next call of hold() or update() on; for the thread that calls them. The
   /// output steps by the change times the present velocity, within its rate limit.
   ///
-  /// @param damping  as LawOptions::damping.
+  /// @param damping,rate  as LawOptions::damping, n, and LawOptions::damping_rate.
   /// @return false, and the damping is as it was, where the constructor would throw.
-  bool setDamping(const ConstVectorRef& damping) noexcept;
+  bool setDamping(const ConstVectorRef& damping, double rate = 0.0) noexcept;
 
   /// `q_ref - q`, n, until the next call; the short way of continuous joints, whose positions may be
   /// within one turn or unbounded. All laws feed back this error.
@@ -137,23 +142,26 @@ class ControlLaw {
       return refuse(Status::kSolverFailed, state, period, tau);
     }
     if (!desired_.allFinite()) return refuse(Status::kTorqueNotFinite, state, period, tau);
-    updateGravity(state.q);  // for cycles to come that don't know it
+    remember(state.q);  // for cycles to come that don't know it
     return output_.apply(desired_, period, tau);
   }
 
+  /// Subtracts `(damping + damping_rate H(q)) qd`. Throws what a faulty solver throws.
+  void damp(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef tau);
+
   ModelTerms& model() noexcept { return model_; }
-  const OwnedVector& damping() const noexcept { return damping_; }
 
  private:
-  // Whether the solver gave a finite one.
-  bool updateGravity(const ConstVectorRef& q) noexcept;
+  // Where joints are, as far as it is known, and gravity there; whether the solver gave a finite one.
+  bool remember(const ConstVectorRef& q) noexcept;
 
   ModelTerms model_;
   FrictionCompensation friction_;
   OutputStage output_;
   OwnedVector damping_;
-  OwnedVector desired_, f_, error_;          // scratch
-  OwnedVector gravity_, gravity_candidate_;  // last known; scratch
+  double damping_rate_;
+  OwnedVector desired_, f_, error_;  // scratch
+  OwnedVector q_, gravity_;          // last known
 };
 
 }  // namespace v2

@@ -8,7 +8,7 @@
 ///     GravityCompensation law(solver, options);
 ///     const Status status = law.update(state, period, tau);
 ///
-///     tau = g(q) - damping qd + f
+///     tau = g(q) - D qd + f
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
-/// `tau = g(q) - damping qd + f`; needs no physical H.
+/// `tau = g(q) - D qd + f`, D the damping of LawOptions; needs no physical H.
 class GravityCompensation : public ControlLaw {
  public:
   /// Throws inverse_dynamics_solver::InvalidParameterValueException: options of the wrong size or

@@ -58,6 +58,12 @@ class ModelTerms {
   void components(const ConstVectorRef& q, const ConstVectorRef& qd,
                   inverse_dynamics_solver::MatrixRef H, VectorRef bias);
 
+  /// `H(q)`, n x n; until the next call.
+  const chain_dynamics::OwnedMatrix& inertia(const ConstVectorRef& q) {
+    solver_->getInertiaMatrix(q, H_);
+    return H_;
+  }
+
   /// The part of `g(q)` that the robot doesn't compensate, n.
   void gravity(const ConstVectorRef& q, VectorRef g) const;
 
