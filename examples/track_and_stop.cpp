@@ -23,8 +23,8 @@ int main() {
   // Before the loop: everything that can fail or allocates.
   const double period = 1e-3;  // s
   LawOptions options;
-  options.limits.effort = Eigen::VectorXd::Constant(n, 20.0);                    // N m
-  options.damping = dampingFor(*solver, Eigen::VectorXd::Zero(n), 5.0, period);  // 5 1/s
+  options.limits.effort = Eigen::VectorXd::Constant(n, 20.0);  // N m
+  options.damping_rate = 5.0;                                  // 1/s
   ComputedTorque law(solver, Gains::uniform(n, 20.0, 1.0), options);
   SafeStop stop(Eigen::VectorXd::Constant(n, 4.0), solver->jointNames());  // rad/s^2
   JointState state(n);

@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   const Gains gains = Gains::uniform(n, 20.0, 1.0);  // 20 rad/s, critically damped
   LawOptions options;
   options.limits.effort = describedLimits(urdf, solver->jointNames()).effort;  // N m
-  options.damping = dampingFor(*solver, Eigen::VectorXd::Zero(n), 5.0, period);
+  options.damping_rate = 5.0;                                                  // 1/s
   ComputedTorque law(solver, gains, options);
   Eigen::VectorXd start(6), tau(n);
   start << 0.0, -1.2, 1.5, -0.5, 1.0, 0.0;  // rad

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Control laws of the package inverse_dynamics_control, to be tried on simulated robots.
 
-    from inverse_dynamics.control import ComputedTorque, Gains, LawOptions, damping_for
+    from inverse_dynamics.control import ComputedTorque, Gains, LawOptions
 
-    options = LawOptions(effort_limit=limits, damping=damping_for(solver, q_home, 5.0, period=1e-3))
+    options = LawOptions(effort_limit=limits, damping_rate=5.0)  # 1/s
     law = ComputedTorque(solver, Gains.of(np.full(6, 20.0), np.ones(6)), options)
     tau, status = law.update(q, qd, q_reference, qd_reference, qdd_reference, period=1e-3)
 
@@ -30,7 +30,6 @@ from inverse_dynamics._core import (
     PdGravityCompensation,
     SafeStop,
     Status,
-    damping_for,
 )
 
 __all__ = [
@@ -48,5 +47,4 @@ __all__ = [
     "PdGravityCompensation",
     "SafeStop",
     "Status",
-    "damping_for",
 ]

@@ -182,13 +182,13 @@ void bindLawOptions(py::module_& module) {
                  Field{"blend", &F::blend, "rad/s, over which it sets in"},
                  Field{"scale", &F::scale, "share of it that is compensated"});
   using O = LawOptions;
-  bindOptions<2>(module, "LawOptions", "Options of every law; arrays (n,).", "",
-                 limitField("effort_limit", &OutputLimits::effort, "N m"),
-                 Field{"damping", &O::damping, "N m s/rad; of the safe torque; each joint alone"},
-                 Field{"damping_rate", &O::damping_rate, "1/s; the same, times H(q)"},
-                 limitField("rate_limit", &OutputLimits::rate, "N m/s; empty: none"),
-                 Field{"compensated", &O::compensated, "what the robot adds by itself"},
-                 Field{"friction", &O::friction, "how friction is compensated"});
+  bindOptions(module, "LawOptions", "Options of every law; arrays (n,).", "",
+              limitField("effort_limit", &OutputLimits::effort, "N m"),
+              Field{"damping", &O::damping, "N m s/rad; of the safe torque; each joint alone"},
+              Field{"damping_rate", &O::damping_rate, "1/s; the same, times H(q)"},
+              limitField("rate_limit", &OutputLimits::rate, "N m/s; empty: none"),
+              Field{"compensated", &O::compensated, "what the robot adds by itself"},
+              Field{"friction", &O::friction, "how friction is compensated"});
   bindOptions<2>(module, "PdGains", "Gains of a PD law.", "",
                  Field{"Kp", &PdGains::Kp, "(n,) N m/rad (prismatic N/m)"},
                  Field{"Kd", &PdGains::Kd, "(n,) N m s/rad (prismatic N s/m)"});
@@ -224,7 +224,7 @@ Parameters
 effort : array_like, (n,), optional
     N m (prismatic N) that acts now: rate limits begin there.)")
       .def("hold", &hold, "q"_a, "qd"_a, "period"_a,
-           ("The safe torque g(q) - damping qd.\n\nParameters\n----------\n" + kState + kPeriod +
+           ("The safe torque g(q) - D qd.\n\nParameters\n----------\n" + kState + kPeriod +
             kTorques)
                .c_str())
       .def_property_readonly(
@@ -249,7 +249,7 @@ effort : array_like, (n,), optional
            "period"_a, (kUpdate + kState + kPositions + kVelocities + kPeriod + kTorques).c_str())
       .def("set_gains", &setGains<PdGravityCompensation, PdGains>, "gains"_a, kSetGains);
   py::class_<GravityCompensation, ControlLaw>(module, "GravityCompensation",
-                                              "tau = g(q) - damping qd + f.")
+                                              "tau = g(q) - D qd + f.")
       .def(ofSolver<GravityCompensation, LawOptions>(), "solver"_a, "options"_a)
       .def("update", &gravityCompensation, "q"_a, "qd"_a, "period"_a, "qd_reference"_a = py::none(),
            (kUpdate + kState + kPeriod + kVelocities +
@@ -268,31 +268,6 @@ effort : array_like, (n,), optional
            "effort : array_like, (n,)\n    N m (prismatic N) that the feed-forward is added to.\n" +
            kPeriod + kTorques)
               .c_str());
-}
-
-void bindDamping(py::module_& module) {
-  module.def(
-      "damping_for",
-      [](const SolverObject& solver, const Vector& q, double rate, double period) {
-        return dampingFor(*solverOf(solver), q, rate, period);
-      },
-      "solver"_a, "q"_a, "rate"_a, "period"_a,
-      R"(Damping of the safe torque: rate H_jj(q).
-
-Parameters
-----------
-solver : Solver
-q : array_like, (n,)
-    rad (prismatic m).
-rate : float
-    1/s.
-period : float
-    s, of the loop.
-
-Returns
--------
-ndarray, (n,)
-    N m s/rad (prismatic N s/m).)");
 }
 
 void bindSafeStop(py::module_& module) {
@@ -341,7 +316,6 @@ tuple of three ndarray, (n,) each
 void bindControl(py::module_& module) {
   bindLawEnums(module);
   bindLawOptions(module);
-  bindDamping(module);
   bindLaws(module);
   bindSafeStop(module);
 }

@@ -34,7 +34,7 @@ extern const Parameters parameters;
 
 // Numbers of joints that somebody has chosen or measured.
 extern const Eigen::VectorXd effort_limits, measured_effort, pid_effort, torques;
-extern const Eigen::VectorXd q_home, damping, stiffness, deceleration, viscous_scale, coulomb_scale;
+extern const Eigen::VectorXd damping, stiffness, deceleration, viscous_scale, coulomb_scale;
 extern Eigen::MatrixXd quiet;
 
 // What other examples make.
@@ -70,9 +70,6 @@ extern LawOptions options;
 }
 namespace contact_sensing_examples {
 extern ContactOptions options;
-}
-namespace damping_examples {
-extern LawOptions options;
 }
 namespace estimator_choice_examples {
 extern EstimatorOptions options;

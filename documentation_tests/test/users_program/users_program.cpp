@@ -89,7 +89,7 @@ inverse_dynamics_control::LawOptions lawOptions(
   options.limits.effort = VectorXd::Constant(6, 500.0);
   options.limits.rate = VectorXd::Constant(6, 1e6);
   options.damping = VectorXd::Zero(3);
-  options.damping = inverse_dynamics_control::dampingFor(solver, kQ, 0.5, 1e-3);
+  options.damping = VectorXd(0.5 * solver.getInertiaMatrix(kQ).diagonal());
   return options;
 }
 

@@ -60,7 +60,7 @@ WRONG = {
         lambda s: Gains.of(Q)
     ),
     "LawOptions: argument damping: expected vector, got an array of float64 (2, 6)": (
-        lambda s: LawOptions(Q, np.zeros((2, 6)))
+        lambda s: LawOptions(Q, damping=np.zeros((2, 6)))
     ),
     "ComputedTorque: argument gains: expected Gains, got 3": lambda s: ComputedTorque(s, 3, 4),
     "evaluate: argument bag: expected Path | str | JointLog | Mapping[str, Any] | DataFrame, got 3": (
@@ -103,7 +103,7 @@ def test_argument_is_named(solver: Solver, text: str) -> None:
 
 def test_other_errors_are_passed_on() -> None:
     with pytest.raises(TypeError, match="^argument solver: expected a Solver, got int$"):
-        _core.damping_for(3, Q, 0.1, 0.1)
+        _core.GravityCompensation(3, LawOptions(Q, damping=Q))
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,6 @@ from inverse_dynamics.control import (
     LawOptions,
     ModelState,
     Status,
-    damping_for,
 )
 from inverse_dynamics.errors import InvalidParameterError
 
@@ -91,5 +90,5 @@ def test_mistakes_are_named(solver, identified):
         ComputedTorque(identified, gains, options())
     with pytest.raises(InvalidParameterError, match="joint elbow_joint: wrong value"):
         ComputedTorque(solver, gains, options(damping=[0, 0, -1, 0, 0, 0]))
-    with pytest.raises(InvalidParameterError, match="dampingFor: rate: wrong value"):
-        damping_for(solver, q, -1.0, PERIOD)
+    with pytest.raises(InvalidParameterError, match="damping_rate: wrong value"):
+        ComputedTorque(solver, gains, options(damping_rate=-1.0))

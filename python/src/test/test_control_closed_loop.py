@@ -24,7 +24,6 @@ from inverse_dynamics.control import (
     PdGravityCompensation,
     SafeStop,
     Status,
-    damping_for,
 )
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.model import JointFriction, Payload, SimulatedRobot
@@ -73,9 +72,8 @@ def fast_motion(name: str) -> WaypointTrajectory:
 def options_of(
     name: str, robot: SimulatedRobot, compensated: Compensated | None = None
 ) -> LawOptions:
-    damping = damping_for(solver_of(name), HOME[name], 5.0, PERIOD)
     compensated = compensated or Compensated()
-    return LawOptions(effort_limit=robot.chain.effort, damping=damping, compensated=compensated)
+    return LawOptions(effort_limit=robot.chain.effort, damping_rate=5.0, compensated=compensated)
 
 
 def follow_fast_motion(robot: SimulatedRobot, name: str, law: Command) -> tuple[Response, Floats]:
@@ -249,7 +247,7 @@ def test_safe_stop_stops_on_the_way(name: str) -> None:
 def test_feed_forward_makes_a_weak_pd_follow(name: str) -> None:
     robot = simulated(name)
     law = FeedForward(solver_of(name), options_of(name, robot))
-    Kd = damping_for(solver_of(name), HOME[name], 10.0, PERIOD)
+    Kd = 10.0 * np.diag(solver_of(name).inertia_matrix(HOME[name]))
     references = list(zip(*fast_motion(name).at(np.arange(10000) * PERIOD), strict=True))
 
     def pd(k: int, q: Floats, qd: Floats) -> Floats:

@@ -10,7 +10,6 @@
 #include "inverse_dynamics_control/contact_sensing.hpp"            // IWYU pragma: export
 #include "inverse_dynamics_control/contact_thresholds.hpp"         // IWYU pragma: export
 #include "inverse_dynamics_control/control_law.hpp"                // IWYU pragma: export
-#include "inverse_dynamics_control/damping.hpp"                    // IWYU pragma: export
 #include "inverse_dynamics_control/estimator_choice.hpp"           // IWYU pragma: export
 #include "inverse_dynamics_control/external_torque_estimator.hpp"  // IWYU pragma: export
 #include "inverse_dynamics_control/fault_latch.hpp"                // IWYU pragma: export

@@ -18,7 +18,7 @@ from simulation_arms import robots_package
 
 from inverse_dynamics import load_robot, retime
 from inverse_dynamics._core import MotionLimits, RetimeOptions
-from inverse_dynamics.control import ComputedTorque, Gains, LawOptions, Status, damping_for
+from inverse_dynamics.control import ComputedTorque, Gains, LawOptions, Status
 from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.retiming.retiming import described_limits
 from inverse_dynamics.robots.arm import Arm
@@ -97,7 +97,7 @@ def execute(robot: Robot, waypoints: Floats, planned: float, carried: float) -> 
     q, qd, _ = fastest.timed.states(time)
     _, _, qdd = fastest.timed.states(time + 0.5 / RATE)  # of the middle: the torque is held
     qdd[time + 0.5 / RATE > fastest.duration] = 0.0
-    options = LawOptions(torque, damping_for(own.solver, waypoints[0], 5.0, 1 / RATE))
+    options = LawOptions(torque, damping_rate=5.0)
     law = ComputedTorque(own.solver, Gains.of(np.full(n, 20.0), np.ones(n)), options)
     saturated = np.zeros((ticks, n), dtype=bool)
 
