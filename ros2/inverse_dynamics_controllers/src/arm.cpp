@@ -6,14 +6,23 @@
 
 #include <chain_dynamics/text.hpp>
 #include <cmath>
+#include <inverse_dynamics_control/compensated.hpp>
+#include <inverse_dynamics_control/control_law.hpp>
+#include <inverse_dynamics_control/friction_compensation.hpp>
+#include <inverse_dynamics_control/joint_parameters.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/parameters.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
+#include <memory>
 #include <rcl_interfaces/msg/parameter_descriptor.hpp>
 #include <rclcpp/exceptions.hpp>
 #include <rclcpp/parameter.hpp>
 #include <rclcpp/parameter_map.hpp>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "changing_damping.hpp"
 

@@ -4,8 +4,11 @@
 #include <cstddef>
 #include <hardware_interface/types/hardware_interface_type_values.hpp>
 #include <initializer_list>
+#include <inverse_dynamics_control/signals.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
 

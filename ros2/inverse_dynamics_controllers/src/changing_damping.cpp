@@ -4,6 +4,7 @@
 #include <chain_dynamics/text.hpp>
 #include <cmath>
 #include <cstddef>
+#include <inverse_dynamics_control/joint_parameters.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>
 #include <vector>

@@ -2,8 +2,14 @@
 #include "inverse_dynamics_controllers/external_wrench_broadcaster.hpp"
 
 #include <algorithm>
+#include <inverse_dynamics_control/contact_sensing.hpp>
+#include <inverse_dynamics_control/estimator_choice.hpp>
+#include <inverse_dynamics_control/external_torque_estimator.hpp>
+#include <inverse_dynamics_control/joint_parameters.hpp>
 #include <inverse_dynamics_controllers/external_wrench_broadcaster_parameters.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 

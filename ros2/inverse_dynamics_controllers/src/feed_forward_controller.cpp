@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_controllers/feed_forward_controller.hpp"
 
+#include <inverse_dynamics_control/control_law.hpp>
 #include <inverse_dynamics_control/feed_forward.hpp>
+#include <inverse_dynamics_control/pd_gravity_compensation.hpp>
+#include <inverse_dynamics_control/signals.hpp>
+#include <inverse_dynamics_control/status.hpp>
 #include <inverse_dynamics_controllers/feed_forward_controller_parameters.hpp>
 #include <memory>
 #include <string>

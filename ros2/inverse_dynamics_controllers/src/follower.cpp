@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "follower.hpp"
 
+#include <inverse_dynamics_control/joint_parameters.hpp>
+#include <inverse_dynamics_control/pd_gravity_compensation.hpp>
+#include <inverse_dynamics_control/reference_guard.hpp>
 #include <string>
+#include <vector>
 
 namespace inverse_dynamics_controllers {
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_controllers/following_controller.hpp"
 
+#include <inverse_dynamics_control/signals.hpp>
 #include <inverse_dynamics_controllers/reference_parameters.hpp>
 #include <limits>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "arm.hpp"
 #include "follower.hpp"

@@ -2,7 +2,9 @@
 #include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
 
 #include <inverse_dynamics_control/gravity_compensation.hpp>
+#include <inverse_dynamics_control/signals.hpp>
 #include <inverse_dynamics_controllers/gravity_compensation_controller_parameters.hpp>
+#include <memory>
 
 #include "arm.hpp"
 #include "control_loop.hpp"

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <inverse_dynamics_control/computed_torque.hpp>
+#include <inverse_dynamics_control/joint_parameters.hpp>
 #include <inverse_dynamics_controllers/inverse_dynamics_controller_parameters.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
 #include <memory>
 #include <sstream>
 #include <string>

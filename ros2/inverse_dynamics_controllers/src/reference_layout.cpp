@@ -2,10 +2,14 @@
 #include "reference_layout.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chain_dynamics/text.hpp>
 #include <cmath>
 #include <cstddef>
+#include <inverse_dynamics_control/signals.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <string>
+#include <vector>
 
 namespace inverse_dynamics_controllers {
 

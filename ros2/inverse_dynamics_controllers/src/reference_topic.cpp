@@ -2,10 +2,15 @@
 #include "reference_topic.hpp"
 
 #include <algorithm>
+#include <builtin_interfaces/msg/time.hpp>
 #include <chain_dynamics/text.hpp>
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <string>
+#include <trajectory_msgs/msg/joint_trajectory.hpp>
 #include <trajectory_msgs/msg/joint_trajectory_point.hpp>
+#include <vector>
 
 #include "latest_value.hpp"
 

@@ -2,7 +2,9 @@
 #include "robot_description.hpp"
 
 #include <chrono>
+#include <memory>
 #include <mutex>
+#include <std_msgs/msg/string.hpp>
 #include <thread>
 #include <utility>
 

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "state_publisher.hpp"
 
+#include <chain_dynamics/chain.hpp>
 #include <control_msgs/msg/joint_trajectory_controller_state.hpp>
 #include <cstdint>
+#include <inverse_dynamics_control/signals.hpp>
+#include <memory>
 #include <rclcpp/create_timer.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "latest_value.hpp"
 

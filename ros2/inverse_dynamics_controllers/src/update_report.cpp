@@ -2,8 +2,14 @@
 #include "update_report.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chain_dynamics/text.hpp>
 #include <cstddef>
+#include <cstdint>
+#include <inverse_dynamics_control/reference_guard.hpp>
+#include <inverse_dynamics_control/status.hpp>
+#include <string>
+#include <vector>
 
 namespace inverse_dynamics_controllers {
 

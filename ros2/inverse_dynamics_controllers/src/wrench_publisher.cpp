@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrench_publisher.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <geometry_msgs/msg/wrench.hpp>
 #include <geometry_msgs/msg/wrench_stamped.hpp>
+#include <inverse_dynamics_control/contact_sensing.hpp>
 #include <inverse_dynamics_msgs/msg/contact.hpp>
+#include <memory>
 #include <rclcpp/create_timer.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "latest_value.hpp"
 

@@ -2,7 +2,10 @@
 #include "wrench_report.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <inverse_dynamics_control/external_torque_estimator.hpp>
 #include <string>
+#include <vector>
 
 namespace inverse_dynamics_controllers {
 

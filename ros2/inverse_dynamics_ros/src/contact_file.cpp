@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <chain_dynamics/located_yaml.hpp>
+#include <cmath>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
+#include <vector>
 
 #include "user_error.hpp"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <inverse_dynamics_evaluation/metrics.hpp>
 #include <string>
 #include <vector>
 

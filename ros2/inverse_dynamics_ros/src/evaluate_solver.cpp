@@ -10,7 +10,14 @@
 
 #include <cstddef>
 #include <cstdio>
+#include <inverse_dynamics_evaluation/accelerations.hpp>
+#include <inverse_dynamics_evaluation/effort.hpp>
+#include <inverse_dynamics_evaluation/evaluator.hpp>
+#include <inverse_dynamics_evaluation/recording.hpp>
+#include <inverse_dynamics_evaluation/run_configuration.hpp>
+#include <inverse_dynamics_evaluation/sample_table.hpp>
 #include <inverse_dynamics_ros/evaluate_solver_parameters.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <string>

@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <sensor_msgs/msg/imu.hpp>
 
 namespace inverse_dynamics_ros {
 namespace {

@@ -9,7 +9,11 @@
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
 #include <geometry_msgs/msg/vector3.hpp>
 #include <inverse_dynamics_control/joint_parameters.hpp>
+#include <inverse_dynamics_solver/external_wrench.hpp>
+#include <inverse_dynamics_solver/parameters.hpp>
 #include <sstream>
+#include <std_msgs/msg/header.hpp>
+#include <string>
 #include <utility>
 
 #include "contact_file.hpp"

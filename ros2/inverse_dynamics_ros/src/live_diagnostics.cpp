@@ -3,6 +3,7 @@
 #include "live_diagnostics.hpp"
 
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
+#include <string>
 #include <utility>
 
 namespace inverse_dynamics_ros {

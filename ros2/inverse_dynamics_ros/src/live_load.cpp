@@ -8,7 +8,10 @@
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
 #include <exception>
+#include <geometry_msgs/msg/vector3_stamped.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/variable_gravity.hpp>
+#include <sensor_msgs/msg/imu.hpp>
 #include <string>
 #include <utility>
 

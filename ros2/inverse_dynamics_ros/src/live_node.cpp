@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <inverse_dynamics_evaluation/online_derivative.hpp>
 #include <inverse_dynamics_ros/live_node_parameters.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <rclcpp/rclcpp.hpp>

@@ -2,7 +2,12 @@
 
 #include "live_payload.hpp"
 
+#include <chain_dynamics/chain.hpp>
 #include <cstddef>
+#include <cstdint>
+#include <inverse_dynamics_evaluation/online_derivative.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <memory>
 
 namespace inverse_dynamics_ros {
 namespace {

@@ -4,8 +4,11 @@
 
 #include <Eigen/Core>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <geometry_msgs/msg/inertia.hpp>
+#include <geometry_msgs/msg/inertia_stamped.hpp>
 #include <inverse_dynamics_control/joint_parameters.hpp>
 #include <string>
 #include <utility>

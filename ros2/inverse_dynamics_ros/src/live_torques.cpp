@@ -3,8 +3,16 @@
 #include "live_torques.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <inverse_dynamics_evaluation/effort.hpp>
+#include <inverse_dynamics_evaluation/joint_matching.hpp>
+#include <inverse_dynamics_evaluation/online_derivative.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <limits>
+#include <memory>
+#include <sensor_msgs/msg/joint_state.hpp>
 #include <utility>
+#include <vector>
 
 namespace inverse_dynamics_ros {
 

@@ -5,7 +5,11 @@
 #include <unistd.h>
 
 #include <exception>
+#include <filesystem>
+#include <memory>
 #include <rosbag2_storage/storage_options.hpp>
+#include <string>
+#include <system_error>
 
 #include "user_error.hpp"
 

@@ -7,10 +7,16 @@
 #include <cstdint>
 #include <exception>
 #include <inverse_dynamics_evaluation/error.hpp>
+#include <inverse_dynamics_evaluation/joint_state_source.hpp>
+#include <inverse_dynamics_evaluation/recording.hpp>
+#include <memory>
 #include <rclcpp/serialization.hpp>
 #include <rclcpp/serialized_message.hpp>
+#include <string>
+#include <trajectory_msgs/msg/joint_trajectory.hpp>
 #include <trajectory_msgs/msg/joint_trajectory_point.hpp>
 #include <utility>
+#include <vector>
 
 #include "user_error.hpp"
 

@@ -2,13 +2,18 @@
 
 #include "robot_parameters.hpp"
 
+#include <chain_dynamics/error.hpp>
 #include <chain_dynamics/robot_description.hpp>
 #include <chain_dynamics/text.hpp>
 #include <cstddef>
 #include <fstream>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
+#include <inverse_dynamics_evaluation/run_configuration.hpp>
 #include <inverse_dynamics_ros/robot_parameters.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/parameters.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
+#include <memory>
 #include <optional>
 #include <rcl_interfaces/msg/parameter_descriptor.hpp>
 #include <rclcpp/parameter.hpp>

@@ -3,7 +3,12 @@
 #include "torque_bag.hpp"
 
 #include <cstddef>
+#include <inverse_dynamics_evaluation/joint_matching.hpp>
 #include <inverse_dynamics_evaluation/joint_state_writer.hpp>
+#include <inverse_dynamics_evaluation/recording.hpp>
+#include <inverse_dynamics_evaluation/sample_table.hpp>
+#include <string>
+#include <trajectory_msgs/msg/joint_trajectory.hpp>
 #include <trajectory_msgs/msg/joint_trajectory_point.hpp>
 #include <vector>
 

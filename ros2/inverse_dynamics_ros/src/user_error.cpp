@@ -2,10 +2,12 @@
 
 #include "user_error.hpp"
 
+#include <exception>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <rclcpp/exceptions.hpp>
 #include <rclcpp/parameter_value.hpp>
+#include <string>
 
 namespace inverse_dynamics_ros {
 namespace {

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <memory>
+#include <string>
+#include <vector>
 
 #if __has_include(<urdf/model.hpp>)  // newer than jazzy
 #include <urdf/model.hpp>

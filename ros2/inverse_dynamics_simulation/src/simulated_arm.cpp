@@ -7,9 +7,12 @@
 #include <cstddef>
 #include <exception>
 #include <hardware_interface/types/hardware_interface_type_values.hpp>
+#include <memory>
 #include <pluginlib/class_list_macros.hpp>
 #include <rclcpp/logging.hpp>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace inverse_dynamics_simulation {
 
