@@ -223,10 +223,10 @@ Parameters
 ----------
 effort : array_like, (n,), optional
     N m (prismatic N) that acts now: rate limits begin there.)")
-      .def("hold", &hold, "q"_a, "qd"_a, "period"_a,
-           ("The safe torque g(q) - D qd.\n\nParameters\n----------\n" + kState + kPeriod +
-            kTorques)
-               .c_str())
+      .def(
+          "hold", &hold, "q"_a, "qd"_a, "period"_a,
+          ("The safe torque g(q) - D qd.\n\nParameters\n----------\n" + kState + kPeriod + kTorques)
+              .c_str())
       .def_property_readonly(
           "saturated", [](const ControlLaw& law) { return law.saturated(); },
           "(n,) Whether the last torque was cut to its effort limit.")
