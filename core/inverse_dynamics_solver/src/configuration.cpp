@@ -345,7 +345,7 @@ void refuseMotorsAndSprings(const Configuration& configuration) {
     const bool is_motors = name == configuration.fullName("motors");
     if (!is_motors && name.rfind(configuration.fullName("springs."), 0) != 0) continue;
     throw InvalidParameterValueException("parameter '" + name + "'", "wrong value",
-                                         "none, as the solver computes chains without " +
+                                         "none, as the solver takes no " +
                                              std::string(is_motors ? "motors" : "springs"),
                                          "one", "take rigid_body_inverse_dynamics_solver");
   }
