@@ -42,7 +42,7 @@ struct Robot;
 ///
 /// Up to kMaxJoints joints. Real time: no method but the constructor, addToGram(),
 /// torqueDerivativesBatch() and coriolisMatrixBatch() allocates, locks or throws; one state needs up to 48 KiB of stack, many
-/// states up to 112 KiB; of a mechanism 160 KiB, and the regressor of a branch of more than 32 joints
+/// states up to 112 KiB; of a mechanism or springs 160 KiB, and the regressor of a branch of more than 32 joints
 /// allocates [docs/real_time.md]. Threads: safe. NaN gives NaN in every entry that
 /// depends on it. A vector may be written where one of the inputs stands (tau where q does, of many
 /// states in the same layout); otherwise outputs overlap no input.
