@@ -359,7 +359,7 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
     return frictionLoadSlope(model.friction[static_cast<std::size_t>(j)], velocity(j), load.g[j]);
   };
   for (Eigen::Index j = 0; j < model.stiffness.size(); ++j) {
-    dtau_dq(j, j) += loadSlope(j) * model.stiffness[j];
+    dtau_dq(j, j) += load_slope(j) * model.stiffness[j];
   }
   if (!model.branches.empty()) {
     Scratch<double> memory(n);
