@@ -64,6 +64,7 @@ Models toPinocchio(const std::vector<chain_dynamics::Branch>& branches) {
   model.gravity = pinocchio::Motion(branches[0].chain.gravity(), Eigen::Vector3d::Zero());
   // Pinocchio wants all joints below a joint in a row, so branches that begin alike stand together.
   std::vector<const Branch*> order;
+  order.reserve(branches.size());
   for (const Branch& branch : branches) order.push_back(&branch);
   std::sort(order.begin(), order.end(),
             [](const Branch* a, const Branch* b) { return a->link < b->link; });

@@ -8,6 +8,8 @@
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/spatial.hpp>
 #include <cstddef>
+#include <inverse_dynamics_solver/external_wrench.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
 #include <vector>
 
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"

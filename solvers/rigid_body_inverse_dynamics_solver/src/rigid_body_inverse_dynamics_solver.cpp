@@ -16,6 +16,7 @@
 
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/fast_model.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/model.hpp"
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
