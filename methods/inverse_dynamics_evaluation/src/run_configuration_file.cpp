@@ -92,7 +92,7 @@ std::vector<double> driveGainsOf(const std::optional<LocatedValue>& value) {
   return gains;
 }
 
-std::vector<std::string> jointsOf(const std::optional<LocatedValue>& value) {
+std::vector<std::string> namesOf(const std::optional<LocatedValue>& value) {
   std::vector<std::string> names;
   if (!value) return names;
   for (const LocatedValue& entry : value->entries()) names.push_back(entry.text());
@@ -100,6 +100,11 @@ std::vector<std::string> jointsOf(const std::optional<LocatedValue>& value) {
     value->refuse("expected each name once, got " + joined(names));
   }
   return names;
+}
+
+/// One text: names of several tips stand with commas between them.
+std::string tipOf(const std::optional<LocatedValue>& value) {
+  return value && value->isList() ? joined(namesOf(value)) : textOf(value);
 }
 
 void readAccelerations(const std::optional<LocatedValue>& value, RunConfiguration& robot) {
@@ -170,12 +175,12 @@ RunConfiguration readFile(const std::string& file) {
   robot.urdf = existingFile(top.optional("urdf"));
   robot.model = existingFile(top.optional("model"));
   robot.root = textOf(top.optional("root"));
-  robot.tip = textOf(top.optional("tip"));
+  robot.tip = tipOf(top.optional("tip"));
   robot.gravity = gravityOf(top.optional("gravity"));
   const auto friction = top.optional("friction");
   robot.friction = friction ? friction->truth() : robot.friction;
   robot.topic = textOf(top.optional("topic"), robot.topic);
-  robot.joints = jointsOf(top.optional("joints"));
+  robot.joints = namesOf(top.optional("joints"));
   robot.effort = textOf(top.optional("effort"), robot.effort,
                         {kTorque, kCurrent, kTorqueWithoutGravity, kAutomatic});
   robot.drive_gains = driveGainsOf(top.optional("drive_gains"));

@@ -39,7 +39,7 @@ struct RunConfiguration {
   std::string plugin;                            ///< `package/Class`
   std::string urdf;                              ///< path
   std::string model;                             ///< path
-  std::string root, tip;                         ///< links
+  std::string root, tip;                         ///< links; several tips with commas, or *
   std::optional<std::array<double, 3>> gravity;  ///< m/s^2, in the frame of the root link
   bool friction = true;                          ///< whether the solver's friction model counts
   std::string topic = "/joint_states";           ///< of recordings
