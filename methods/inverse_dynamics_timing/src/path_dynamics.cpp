@@ -23,16 +23,26 @@ namespace ids = inverse_dynamics_solver;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Squared speed at which the tip moves at its greatest speed, at each point.
-VectorXd capOfTip(const InverseDynamicsSolver& solver, const MatrixXd& q, const MatrixXd& dq,
-                  double tip_speed) {
-  const auto& kinematics = dynamic_cast<const ids::Kinematics&>(solver);
+/// Of each tip of the robot.
+std::vector<const ids::Kinematics*> tipsOf(const InverseDynamicsSolver& solver) {
+  const auto& first = dynamic_cast<const ids::Kinematics&>(solver);
+  std::vector<const ids::Kinematics*> tips{&first};
+  const std::vector<std::string>& names = solver.tipNames();
+  for (std::size_t i = 1; i < names.size(); ++i) tips.push_back(&first.kinematicsOf(names[i]));
+  return tips;
+}
+
+/// Squared speed at which the fastest tip moves at its greatest speed, at each point.
+VectorXd capOfTips(const InverseDynamicsSolver& solver, const MatrixXd& q, const MatrixXd& dq,
+                   double tip_speed) {
   MatrixXd J(6, q.rows());
-  VectorXd cap(q.cols());
-  for (Index k = 0; k < q.cols(); ++k) {
-    kinematics.getTipJacobian(q.col(k), J);
-    const double greatest = tip_speed / (J.topRows(3) * dq.col(k)).norm();  // ds/dt
-    cap[k] = greatest * greatest;
+  VectorXd cap = VectorXd::Constant(q.cols(), kInfinity);
+  for (const ids::Kinematics* const tip : tipsOf(solver)) {
+    for (Index k = 0; k < q.cols(); ++k) {
+      tip->getTipJacobian(q.col(k), J);
+      const double greatest = tip_speed / (J.topRows(3) * dq.col(k)).norm();  // ds/dt
+      cap[k] = std::min(cap[k], greatest * greatest);
+    }
   }
   return cap;
 }
@@ -112,7 +122,7 @@ PathDynamics::PathDynamics(const InverseDynamicsSolver& solver, const Path& path
   b_.topRows(n) -= part;
   if (accelerations) a_.bottomRows(n) = dq_, b_.bottomRows(n) = ddq;
 
-  cap_ = std::isfinite(limits.tip_speed) ? capOfTip(solver, q_, dq_, limits.tip_speed)
+  cap_ = std::isfinite(limits.tip_speed) ? capOfTips(solver, q_, dq_, limits.tip_speed)
                                          : VectorXd::Constant(count, kInfinity);
   const auto limit_by = [&](const chain_dynamics::OwnedVector& velocity) {
     for (Index k = 0; k < count && velocity.size() > 0; ++k) {
@@ -199,8 +209,8 @@ VectorXd excess(const InverseDynamicsSolver& solver, const Path& path,
     qd.col(i) *= std::sqrt(here);
   }
   solver.getTorquesBatch(q, qd, qdd, tau);
-  const auto* tip =
-      std::isfinite(limits.tip_speed) ? dynamic_cast<const ids::Kinematics*>(&solver) : nullptr;
+  std::vector<const ids::Kinematics*> tips;
+  if (std::isfinite(limits.tip_speed)) tips = tipsOf(solver);
   MatrixXd J(6, n);
   const VectorXd band = torqueBand(solver, margin);
   VectorXd most = VectorXd::Zero(points - 1);
@@ -212,7 +222,7 @@ VectorXd excess(const InverseDynamicsSolver& solver, const Path& path,
     };
     look(qd.col(i), limits.velocity);
     look(qdd.col(i), limits.acceleration);
-    if (tip != nullptr) {
+    for (const ids::Kinematics* const tip : tips) {
       tip->getTipJacobian(q.col(i), J);
       worst = std::max(worst, (J.topRows(3) * qd.col(i)).norm() / limits.tip_speed - 1.0);
     }

@@ -57,7 +57,7 @@ struct MotionLimits {
   chain_dynamics::OwnedVector no_load_velocity;
   /// @}
 
-  double tip_speed = std::numeric_limits<double>::infinity();  ///< of the tip's origin, m/s
+  double tip_speed = std::numeric_limits<double>::infinity();  ///< of each tip's origin, m/s
 };
 
 struct RetimeOptions {
