@@ -149,7 +149,7 @@ std::string tipsToName(const RobotDescription& robot, std::size_t root,
   };
   // an arm with a gripper, not a body with arms
   const std::size_t arm = movable(shared) - movable(jointsAbove(robot, root));
-  if (2 * arm < leaves.front().movable) return "name one of them as tip";
+  if (2 * arm < leaves.front().movable) return "name one of them as tip, or several for a tree";
   return "name '" + robot.links[robot.joints[shared.front()].child].name +
          "' as tip, where they part, or one of them";
 }
