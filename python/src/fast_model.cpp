@@ -59,6 +59,7 @@ class FastModel {
   }
 
   const std::vector<std::string>& joints() const { return names_; }
+  Index links() const { return fast_.linkCount(); }
   const chain_dynamics::Model& model() const { return model_; }
   std::int64_t threads() const { return threads_; }
   const chain_dynamics::FastModel& fast() const { return fast_; }
@@ -83,8 +84,6 @@ class FastModel {
   chain_dynamics::FastModel fast_;
   Frames frames_;
 };
-
-Index linkCount(const FastModel& model) { return model.fast().linkCount(); }
 
 using Numbers3 = std::array<double, 3>;
 

@@ -70,7 +70,7 @@ Frames::Path Frames::pathTo(const std::string& frame, const std::string& method)
                 "'" + frame + "' and no description",
                 "give urdf=, or leave frame= out for the tip");
   }
-  const RobotDescription robot = chain_dynamics::robotFromUrdf(urdf_);
+  RobotDescription robot = chain_dynamics::robotFromUrdf(urdf_);
   if (robot.jointIndex(of_.joints.front()) == RobotDescription::kNone) {
     refuseFrame(method, "a robot description with joint " + of_.joints.front(), "one without it",
                 "leave frame= out for the tip");
@@ -89,16 +89,36 @@ Frames::Path Frames::pathTo(const std::string& frame, const std::string& method)
   options.tip = robot.links[link].name;
   options.lump_attached = false;
   options.allow_massless = true;
+  const RobotDescription followed = robot;
+  for (auto& joint : robot.joints)
+    joint.mimic.reset();  // each moves here; addTo() says which follow
   path.chain = std::make_unique<chain_dynamics::Chain>(chainFromRobot(robot, options));
-  const std::vector<std::string> names = path.chain->jointNames();
-  path.q.setZero(static_cast<Eigen::Index>(names.size()));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto ours = std::find(of_.joints.begin(), of_.joints.end(), names[i]);
-    path.numbers.push_back(ours == of_.joints.end() ? -1 : ours - of_.joints.begin());
-    const auto locked = of_.locked.find(names[i]);
-    if (locked != of_.locked.end()) path.q[static_cast<Eigen::Index>(i)] = locked->second;
+  for (const std::string& name : path.chain->jointNames()) {
+    addTo(path, followed, followed.jointIndex(name));
   }
   return path;
+}
+
+void Frames::addTo(Path& path, const RobotDescription& robot, std::size_t joint) const {
+  double factor = 1, offset = 0;
+  Eigen::Index ours = -1;
+  for (std::size_t steps = 0; steps <= robot.joints.size(); ++steps) {  // few, unless in a loop
+    const RobotDescription::Joint& leader = robot.joints[joint];
+    const auto locked = of_.locked.find(leader.name);
+    const auto found = std::find(of_.joints.begin(), of_.joints.end(), leader.name);
+    if (locked != of_.locked.end()) offset += factor * locked->second;
+    if (found != of_.joints.end()) ours = found - of_.joints.begin();
+    if (locked != of_.locked.end() || ours >= 0 || !leader.mimic) break;
+    offset += factor * leader.mimic->offset;
+    factor *= leader.mimic->multiplier;
+    joint = leader.mimic->joint;
+  }
+  const Eigen::Index i = path.q.size();
+  path.numbers.push_back(ours);
+  path.q.conservativeResize(i + 1);
+  path.factors.conservativeResize(i + 1);
+  path.q[i] = offset;
+  path.factors[i] = factor;
 }
 
 const Frames::Path& Frames::to(const std::string& frame, const std::string& method) const {
@@ -112,7 +132,7 @@ void Frames::Path::setPositions(const chain_dynamics::ConstStates& states, Eigen
                                 Eigen::VectorXd& of_path) const {
   for (Eigen::Index own = 0; own < of_path.size(); ++own) {
     const Eigen::Index j = numbers[static_cast<std::size_t>(own)];
-    if (j >= 0) of_path[own] = states(j, k);
+    of_path[own] = j < 0 ? q[own] : q[own] + factors[own] * states(j, k);
   }
 }
 
@@ -128,7 +148,7 @@ void Frames::Path::jacobians(const chain_dynamics::ConstStates& states,
     }
     for (Eigen::Index own = 0; own < q.size(); ++own) {
       const Eigen::Index j = numbers[static_cast<std::size_t>(own)];
-      for (Eigen::Index i = 0; i < 6 && j >= 0; ++i) J(i, j, k) = J_path(i, own);
+      for (Eigen::Index i = 0; i < 6 && j >= 0; ++i) J(i, j, k) += factors[own] * J_path(i, own);
     }
   }
 }

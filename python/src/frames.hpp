@@ -8,8 +8,10 @@
 
 #include <Eigen/Core>
 #include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/robot_description.hpp>
 #include <chain_dynamics/spatial.hpp>
 #include <chain_dynamics/states.hpp>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -22,7 +24,7 @@ namespace inverse_dynamics_tools {
 /// Whose frames: a chain of a description.
 struct FramesOf {
   std::string root;                      ///< empty: that of the description
-  std::vector<std::string> joints;       ///< from root to tip
+  std::vector<std::string> joints;       ///< the coordinates
   std::map<std::string, double> locked;  ///< positions of joints that are held; others: 0
 };
 
@@ -34,8 +36,10 @@ class Frames {
     std::unique_ptr<const chain_dynamics::Chain> chain;  // null: nothing moves
     chain_dynamics::Transform<double> fixed =
         chain_dynamics::Transform<double>::identity();  // then
-    std::vector<Eigen::Index> numbers;                  // of each joint among ours; -1: held
-    Eigen::VectorXd q;                                  // of those that are held
+    std::vector<Eigen::Index>
+        numbers;              // of each joint, or the one that it follows, among ours; -1: held
+    Eigen::VectorXd factors;  // of ours, in its position: 1 but where it follows one
+    Eigen::VectorXd q;        // position beside that: of a joint that is held, or an offset
 
     /// `J(q)` of each state, 6 x n: the velocity of the frame's origin, linear first, in the axes
     /// of the root frame.
@@ -61,6 +65,9 @@ class Frames {
 
  private:
   Path pathTo(const std::string& frame, const std::string& method) const;
+
+  /// Adds a joint of the description to a path.
+  void addTo(Path& path, const chain_dynamics::RobotDescription& robot, std::size_t joint) const;
 
   const std::string urdf_;
   const FramesOf of_;

@@ -21,6 +21,7 @@ const std::map<std::string, std::pair<const char*, const char*>>& argumentTexts(
        {"array_like, (6,) or (N, 6)",
         "Force [N] and torque [N m] about the tip's origin that the tip exerts."}},
       {"frame", {"{'root', 'tip'}, optional", "In whose axes the wrench is."}},
+      {"tip", {"str, optional", "Which of tip_names; by default the first."}},
       {"link", {"str, optional", "A link or joint of the description; by default the tip."}},
       {"out",
        {"ndarray of float64, optional",

@@ -10,7 +10,7 @@
 ///     });
 ///     // solver.gravity_vector(q, *, out=None): (n,) or (N, n)
 ///
-/// A class has `joints()`, the names of its joints, and `compute(call, of_part)`, which calls
+/// A class has `joints()`, the names of its joints, `links()`, the number of links, and `compute(call, of_part)`, which calls
 /// `of_part(PartOfCall)` for all states of a SolverCall together, or shares them among threads;
 /// `kExample` is how examples make one.
 #pragma once
@@ -34,17 +34,16 @@ namespace inverse_dynamics_tools {
 template <std::size_t N>
 using Inputs = std::array<const char*, N>;
 
-/// The shape of a result for each state of n joints.
-using ShapeOf = Shape (*)(pybind11::ssize_t n);
+/// The shape of a result for each state of n joints that move some links.
+using ShapeOf = Shape (*)(pybind11::ssize_t n, pybind11::ssize_t links);
 
-inline constexpr ShapeOf kScalar = [](pybind11::ssize_t /*n*/) { return Shape{}; };
-inline constexpr ShapeOf kVector3 = [](pybind11::ssize_t /*n*/) { return Shape{3}; };
-inline constexpr ShapeOf kRotation = [](pybind11::ssize_t /*n*/) { return Shape{3, 3}; };
-inline constexpr ShapeOf kPerJoint = [](pybind11::ssize_t n) { return Shape{n}; };
-inline constexpr ShapeOf kJointByJoint = [](pybind11::ssize_t n) { return Shape{n, n}; };
-inline constexpr ShapeOf kJacobian = [](pybind11::ssize_t n) { return Shape{6, n}; };
-/// Instead, ten columns for each link: how many, linkCount(class) says.
-inline constexpr ShapeOf kTenPerLink = nullptr;
+inline constexpr ShapeOf kScalar = [](auto /*n*/, auto /*links*/) { return Shape{}; };
+inline constexpr ShapeOf kVector3 = [](auto /*n*/, auto /*links*/) { return Shape{3}; };
+inline constexpr ShapeOf kRotation = [](auto /*n*/, auto /*links*/) { return Shape{3, 3}; };
+inline constexpr ShapeOf kPerJoint = [](auto n, auto /*links*/) { return Shape{n}; };
+inline constexpr ShapeOf kJointByJoint = [](auto n, auto /*links*/) { return Shape{n, n}; };
+inline constexpr ShapeOf kJacobian = [](auto n, auto /*links*/) { return Shape{6, n}; };
+inline constexpr ShapeOf kTenPerLink = [](auto n, auto links) { return Shape{n, 10 * links}; };
 
 /// Parts of a result's docstring.
 struct ResultText {
@@ -82,10 +81,7 @@ class Quantities {
       std::size_t i = 0;
       (call.input(of.inputs[i++], values), ...);
       const auto n = static_cast<pybind11::ssize_t>(self.joints().size());
-      for (const ShapeOf shape : of.shapes) {
-        const bool per_link = shape == kTenPerLink;
-        call.result("out", out, per_link ? Shape{n, 10 * linkCount(self)} : shape(n));
-      }
+      for (const ShapeOf shape : of.shapes) call.result("out", out, shape(n, self.links()));
       self.compute(call, [&](const PartOfCall& part) { compute(self, part); });
       return call;
     };
@@ -101,7 +97,7 @@ class Quantities {
                                    const MaybeFloats& out) -> Floats {
       SolverCall call("jacobian", self.joints());
       call.input("q", q);
-      call.result("out", out, kJacobian(static_cast<py::ssize_t>(self.joints().size())));
+      call.result("out", out, {6, static_cast<py::ssize_t>(self.joints().size())});
       const Frames::Path* const path =
           frame.empty() ? nullptr : &self.frames().to(frame, "jacobian");
       self.compute(call, [&](const PartOfCall& part) {
@@ -209,7 +205,7 @@ inline constexpr Quantity kTipPose{
     "tip_pose",
     std::array{"q"},
     std::array{kRotation, kVector3},
-    {"Pose of the tip in the root frame: rotation R and position p [m].",
+    {"Pose of the tip, of a tree the first, in the root frame: rotation R and position p [m].",
      "(3, 3) and (3,), or (N, 3, 3) and (N, 3)", "R, p = arm.tip_pose(q)\np.shape\n(100, 3)"}};
 inline constexpr Quantity kTipJacobianDerivative{
     "tip_jacobian_derivative",
@@ -236,9 +232,9 @@ inline constexpr Quantity kRegressor{
     "regressor",
     std::array{"q", "qd", "qdd"},
     std::array{kTenPerLink},
-    {"Y(q, qd, qdd): torques of rigid bodies are Y p, with ten parameters of each link.",
-     "(n, 10 l) or (N, n, 10 l) of l links; of a chain n",
-     "arm.regressor(q, qd, qdd).shape\n(100, 6, 60)"}};
+    {"Y(q, qd, qdd): torques of rigid bodies are Y p, with ten parameters of each link: l = n\n"
+     "links, of a tree also those of joints that mimic others.",
+     "(n, 10 l) or (N, n, 10 l)", "arm.regressor(q, qd, qdd).shape\n(100, 6, 60)"}};
 inline constexpr Quantity kAccelerations{
     "accelerations",
     std::array{"q", "qd", "tau"},

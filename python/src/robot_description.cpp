@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <chain_dynamics/error.hpp>
 #include <chain_dynamics/joint_frame.hpp>
 #include <chain_dynamics/robot_description.hpp>
@@ -11,8 +12,9 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
-#include <set>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -27,10 +29,11 @@ using namespace py::literals;
 using chain_dynamics::RobotDescription;
 using Transform = chain_dynamics::Transform<double>;
 
-/// A joint, and the links that it joins.
+/// A joint, the links that it joins, and the joint that it follows.
 struct DescribedJoint : RobotDescription::Joint {
   std::string parent_link;
   std::string child_link;
+  std::string leader;  ///< that it mimics; empty: none
 };
 
 RobotDescription descriptionOf(const std::string& urdf) {
@@ -42,7 +45,8 @@ RobotDescription descriptionOf(const std::string& urdf) {
 }
 
 DescribedJoint described(const RobotDescription& robot, const RobotDescription::Joint& joint) {
-  return {joint, robot.links[joint.parent].name, robot.links[joint.child].name};
+  return {joint, robot.links[joint.parent].name, robot.links[joint.child].name,
+          joint.mimic ? robot.joints[joint.mimic->joint].name : ""};
 }
 
 std::size_t linkOf(const RobotDescription& robot, const std::string& name) {
@@ -66,7 +70,7 @@ std::vector<std::pair<std::size_t, Transform>> fixedAbove(const RobotDescription
   return found;
 }
 
-/// A joint of a chain, placed in the link that the joint before it moves.
+/// A joint, placed in a link above it.
 DescribedJoint placedIn(const RobotDescription& robot, std::size_t link, std::size_t joint) {
   DescribedJoint placed = described(robot, robot.joints[joint]);
   placed.parent_link = robot.links[link].name;
@@ -97,23 +101,30 @@ std::size_t jointOf(const RobotDescription& robot, const std::string& name) {
   throwError("RobotError", "robot description: expected a joint '" + name + "', got none");
 }
 
+/// The nearest joint above a joint that has one of the names; kNone: there is none.
+std::size_t nearestAbove(const RobotDescription& robot, std::size_t joint,
+                         const std::vector<std::string>& names) {
+  do {
+    joint = robot.links[robot.joints[joint].parent].parent_joint;
+  } while (joint != RobotDescription::kNone &&
+           std::find(names.begin(), names.end(), robot.joints[joint].name) == names.end());
+  return joint;
+}
+
 std::vector<DescribedJoint> chainOf(const RobotDescription& robot,
                                     const std::vector<std::string>& joints,
                                     const std::string& root) {
-  std::set<std::size_t> listed;
-  for (const std::string& name : joints) listed.insert(jointOf(robot, name));
-  std::vector<DescribedJoint> placed;
+  std::vector<DescribedJoint> chain;
+  const std::size_t root_link = linkOf(robot, root);
   for (const std::string& name : joints) {
     const std::size_t joint = jointOf(robot, name);
-    std::size_t above = robot.links[robot.joints[joint].parent].parent_joint;
-    while (above != RobotDescription::kNone && listed.count(above) == 0) {
-      above = robot.links[robot.joints[above].parent].parent_joint;
+    chain.push_back(placedIn(robot, root_link, joint));
+    const std::size_t above = nearestAbove(robot, joint, joints);
+    if (above != RobotDescription::kNone) {
+      chain.back() = placedIn(robot, robot.joints[above].child, joint);
     }
-    const bool first = above == RobotDescription::kNone;
-    placed.push_back(
-        placedIn(robot, first ? linkOf(robot, root) : robot.joints[above].child, joint));
   }
-  return placed;
+  return chain;
 }
 
 /// The link that the most fixed joints separate from a link above it.
@@ -187,8 +198,12 @@ void bindRobotDescription(py::module_& module) {
       .def_readonly("damping", &Joint::damping, "N m s/rad (prismatic N s/m); 0: not stated")
       .def_readonly("friction", &Joint::friction, "N m (prismatic N); 0: not stated")
       .def_property_readonly(
-          "mimics", [](const Joint& joint) { return joint.mimic.has_value(); },
-          "whether it follows another joint")
+          "mimic",
+          [](const Joint& joint) -> std::optional<std::tuple<std::string, double, double>> {
+            if (!joint.mimic) return {};
+            return std::tuple(joint.leader, joint.mimic->multiplier, joint.mimic->offset);
+          },
+          "The joint that it follows, multiplier and offset [rad, m]; None: it follows none.")
       .def_property_readonly("pose", &poseOf,
                              "(4, 4) of the child in the frame of the parent, at q = 0")
       .def_property_readonly(
@@ -216,10 +231,10 @@ void bindRobotDescription(py::module_& module) {
             return joints;
           },
           "all, in the order of the text")
-      .def("chain", &chainOf, "joints"_a, "root"_a = "",
-           "The joints of these names, each placed in the child of the nearest of them above it, "
-           "or in "
-           "the link `root`.\n\nJoints between two of them stand at zero. Raises RobotError.")
+      .def(
+          "chain", &chainOf, "joints"_a, "root"_a = "",
+          "The joints of these names, each placed in the child of the nearest of them above it, or "
+          "in the link `root`.\n\nJoints between two of them stand at zero. Raises RobotError.")
       .def(
           "tip",
           [](const RobotDescription& robot, const std::string& joint) {

@@ -15,6 +15,7 @@
 #include "description.hpp"
 #include "fields.hpp"
 #include "parameters.hpp"
+#include "tips.hpp"
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -59,7 +60,10 @@ Examples
       pathField("urdf", &Robot::urdf, "the path of a description"),
       pathField("model", &Robot::model, "the path of a model file"),
       Field{"root", &Robot::root, "a link; empty: the first"},
-      Field{"tip", &Robot::tip, "a link; empty: the last"},
+      Field<Robot, std::string, Tips>(
+          "tip", [](const Robot& r) { return r.tip; },
+          [](Robot& r, const Tips& tips) { r.tip = textOf(tips); },
+          "a link, several with commas or as a list, or *: all leaves; empty: the last"),
       Field{"gravity", &Robot::gravity, "three numbers, m/s^2, in the frame of the root link"},
       Field{"friction", &Robot::friction, "whether the solver's friction model counts"},
       Field{"topic", &Robot::topic, "the topic of recordings"},

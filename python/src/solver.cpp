@@ -20,6 +20,7 @@
 #include "description.hpp"
 #include "parameters.hpp"
 #include "solver_class.hpp"
+#include "tips.hpp"
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -78,10 +79,13 @@ Robot stating(Robot robot, const ParameterValues& parameters) {
     const auto* const text = std::get_if<std::string>(&value);
     const auto* const truth = std::get_if<bool>(&value);
     const auto* const numbers = std::get_if<std::vector<double>>(&value);
+    const auto* const names = std::get_if<std::vector<std::string>>(&value);
     if (name == "friction" && truth) {
       robot.friction = *truth;
     } else if (name == "gravity" && numbers && numbers->size() == 3) {
       robot.gravity = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+    } else if (names && name == "tip") {
+      robot.tip = textOf(*names);
     } else if (text && (name == "root" || name == "tip" || name == "model")) {
       (name == "root" ? robot.root : name == "tip" ? robot.tip : robot.model) = *text;
     } else {
@@ -92,7 +96,7 @@ Robot stating(Robot robot, const ParameterValues& parameters) {
 }
 
 std::unique_ptr<Solver> makeSolver(const SolverName& named, const Description& urdf,
-                                   const std::string& root, const std::string& tip,
+                                   const std::string& root, const Tips& tips,
                                    const std::optional<std::array<double, 3>>& gravity,
                                    const std::optional<bool>& friction, const std::string& attached,
                                    const std::optional<std::string>& model,
@@ -111,7 +115,7 @@ std::unique_ptr<Solver> makeSolver(const SolverName& named, const Description& u
   };
   if (friction) give("friction", *friction);
   if (!root.empty()) give("root", root);
-  if (!tip.empty()) give("tip", tip);
+  if (const std::string tip = textOf(tips); !tip.empty()) give("tip", tip);
   if (!attached.empty()) give("attached", attached);
   if (model) give("model", *model);
   if (gravity) give("gravity", std::vector<double>(gravity->begin(), gravity->end()));
@@ -194,8 +198,10 @@ plugin : Robot, str or path, optional
     What follows replaces what the robot states; what isn't given has the solver's default.
 urdf : str or path, optional
     Text of the description, or path of a .urdf or .xacro file.
-root, tip : str, optional
-    Links between which the chain is; by default the first and the last.
+root : str, optional
+    Link that the chain begins at; by default the first.
+tip : str or sequence of str, optional
+    Link that it ends at; by default the last. Several, or "*" for all leaves: a tree.
 gravity : sequence of 3 floats, optional
     m/s^2, in the axes of the root link.
 friction : bool, optional

@@ -42,9 +42,10 @@ Floats baseAcceleration(const Solver& solver) {
 
 void setPayload(const Solver& solver, const std::string& name, double mass,
                 const MaybeArrayLike& center_of_mass, const MaybeArrayLike& inertia,
-                const MaybeArrayLike& frame) {
+                const MaybeArrayLike& frame, const std::string& tip) {
   auto& payload = solver.as<ids::Payload>("set_payload");
-  const ids::RigidBody body = bodyOf(mass, center_of_mass, inertia, frame);
+  ids::RigidBody body = bodyOf(mass, center_of_mass, inertia, frame);
+  body.tip = tip;
   unlocked([&] { payload.setPayload(name, body); });
   warn(ids::doubtOf(body));
 }
@@ -90,7 +91,7 @@ void bindChanges(py::class_<Solver>& solver) {
   solver
       .def(
           "set_payload", &setPayload, "name"_a, "mass"_a, "center_of_mass"_a = py::none(),
-          "inertia"_a = py::none(), "frame"_a = py::none(),
+          "inertia"_a = py::none(), "frame"_a = py::none(), "tip"_a = "",
           R"(Adds a rigid body to the tip, or replaces the one of that name, also while other threads compute.
 
 Parameters
@@ -104,6 +105,8 @@ inertia : array_like, (3, 3) or ixx ixy ixz iyy iyz izz, optional
     kg m^2, about the center of mass, in the axes of the body's frame; by default a point mass.
 frame : array_like, (4, 4), optional
     Pose of the body's frame in the tip frame; by default the same.
+tip : str, optional
+    Which of tip_names carries it; by default the first.
 
 Warns
 -----

@@ -8,6 +8,7 @@
 #include <inverse_dynamics_evaluation/run_configuration.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/regressor.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <memory>
 #include <string>
@@ -54,6 +55,10 @@ class Solver {
     return solver_;
   }
   const std::vector<std::string>& joints() const { return solver_->jointNames(); }
+  Eigen::Index links() const {
+    const auto* const regressor = find<inverse_dynamics_solver::Regressor>();
+    return regressor == nullptr ? solver_->jointCount() : regressor->linkCount();
+  }
   const Frames& frames() const { return *frames_; }
 
   /// A capability; null if this solver lacks it.

@@ -89,6 +89,7 @@ py::dict dictionaryOf(const ids::RigidBody& body) {
   found["center_of_mass"] = arrayOf(body.center_of_mass);
   found["inertia"] = body.inertia;
   found["frame"] = frame;
+  if (!body.tip.empty()) found["tip"] = body.tip;
   return found;
 }
 

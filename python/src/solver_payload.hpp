@@ -39,6 +39,7 @@ struct type_caster<inverse_dynamics_solver::RigidBody> {
     const auto part = [&source](const char* key) -> object { return source.attr("get")(key); };
     value = inverse_dynamics_tools::bodyOf(part("mass").cast<double>(), part("center_of_mass"),
                                            part("inertia"), part("frame"));
+    if (const object tip = part("tip"); !tip.is_none()) value.tip = tip.cast<std::string>();
     return true;
   }
   static handle cast(const inverse_dynamics_solver::RigidBody& body, return_value_policy, handle) {

@@ -2,8 +2,11 @@
 #include <pybind11/stl.h>
 
 #include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/model_file.hpp>
+#include <chain_dynamics/robot_description.hpp>
+#include <chain_dynamics/urdf.hpp>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -12,6 +15,7 @@
 #include <inverse_dynamics_solver/torque_deviation.hpp>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -91,32 +95,53 @@ std::string rootOf(const Solver& solver) {
 }
 
 std::string tipOf(const Solver& solver) {
+  if (!solver.get().tipNames().empty()) return solver.get().tipNames().front();
   std::string stated = textParameter(solver, "tip");
-  if (!stated.empty() || solver.origin().urdf.empty()) return stated;
+  if ((!stated.empty() && stated != "*") || solver.origin().urdf.empty()) return stated;
   return describedBy(solver).attr("tip")(solver.joints().back()).cast<std::string>();
+}
+
+/// Those that are stated, by name. zero: whether zero is, too, as in a description.
+py::dict stated(const chain_dynamics::JointLimits& limits, bool zero) {
+  py::dict found("lower"_a = limits.lower, "upper"_a = limits.upper);
+  for (const auto& [name, limit] :
+       {std::pair("velocity", limits.velocity), std::pair("effort", limits.effort),
+        std::pair("acceleration", limits.acceleration),
+        std::pair("deceleration", limits.deceleration), std::pair("jerk", limits.jerk)}) {
+    if ((zero || limit > 0) && std::isfinite(limit)) found[name] = limit;
+  }
+  return found;
+}
+
+/// The joints of a model file, or the coordinates of a tree, which joints that mimic them restrict.
+std::vector<chain_dynamics::Joint> modelJoints(const Solver& solver) {
+  const std::vector<std::string>& tips = solver.get().tipNames();
+  if (tips.empty())
+    return chain_dynamics::modelFromFile(textParameter(solver, "model")).chain.joints();
+  chain_dynamics::UrdfOptions options;
+  options.root = textParameter(solver, "root");
+  options.allow_massless = true;
+  const auto locked = [&solver](const std::string& joint) -> std::optional<double> {
+    const auto found = solver.origin().parameters.find("locked_joints." + joint);
+    if (found == solver.origin().parameters.end()) return {};
+    return std::get<double>(found->second);
+  };
+  options.locked_position = locked;
+  return mechanismFromRobot(chain_dynamics::robotFromUrdf(solver.origin().urdf), options, tips)
+      .coordinates.joints();
 }
 
 /// (n,) each, by name; infinite where none is stated.
 ParameterDict limitsOf(const Solver& solver) {
-  py::list stated;
+  py::list joints;
   const std::string model = textParameter(solver, "model");
-  if (!solver.origin().urdf.empty()) {
+  const bool is_tree = !solver.get().tipNames().empty();
+  if (!is_tree && !solver.origin().urdf.empty()) {
     const py::object chain =
         describedBy(solver).attr("chain")(tupleOf(solver.joints()), textParameter(solver, "root"));
-    for (const auto& joint : chain) stated.append(joint.attr("limits"));
-  } else if (std::filesystem::is_regular_file(model)) {
-    const chain_dynamics::Model read = chain_dynamics::modelFromFile(model);
-    for (const auto& joint : read.chain.joints()) {
-      const auto& limits = joint.limits;
-      py::dict of_joint("lower"_a = limits.lower, "upper"_a = limits.upper);
-      for (const auto& [name, limit] :
-           {std::pair("velocity", limits.velocity), std::pair("effort", limits.effort),
-            std::pair("acceleration", limits.acceleration),
-            std::pair("deceleration", limits.deceleration), std::pair("jerk", limits.jerk)}) {
-        if (limit > 0 && std::isfinite(limit)) of_joint[name] = limit;  // zero states none
-      }
-      stated.append(of_joint);
-    }
+    for (const auto& joint : chain) joints.append(joint.attr("limits"));
+  } else if (is_tree || std::filesystem::is_regular_file(model)) {
+    for (const auto& joint : modelJoints(solver)) joints.append(stated(joint.limits, is_tree));
   }
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const auto n = static_cast<Eigen::Index>(solver.joints().size());
@@ -124,8 +149,8 @@ ParameterDict limitsOf(const Solver& solver) {
   for (const char* const name : {"lower", "upper", "velocity", "effort"}) {
     found[name].setConstant(n, name == std::string("lower") ? -kNone : kNone);
   }
-  for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(stated.size()); ++j) {
-    for (const auto& [name, value] : py::dict(stated[static_cast<std::size_t>(j)])) {
+  for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(joints.size()); ++j) {
+    for (const auto& [name, value] : py::dict(joints[static_cast<std::size_t>(j)])) {
       const auto [of, is_new] = found.try_emplace(name.cast<std::string>());
       if (is_new) of->second.setConstant(n, kNone);
       of->second[j] = value.cast<double>();
@@ -151,7 +176,11 @@ void bindProperties(py::class_<Solver>& solver) {
       .def_property_readonly("root", &rootOf,
                              "Link that the chain begins at; empty: no description says it.")
       .def_property_readonly("tip", &tipOf,
-                             "Link that the chain ends at; empty: no description says it.")
+                             "Link that the chain ends at, of a tree the first tip; empty: no\n"
+                             "description says it.")
+      .def_property_readonly(
+          "tip_names", [](const Solver& s) { return tupleOf(s.get().tipNames()); },
+          "Links that are tips of a tree; none of a chain.")
       .def_property_readonly(
           "limits", &limitsOf,
           "Of the joints, by name, (n,) each: lower, upper (rad, m), velocity\n"
@@ -159,7 +188,8 @@ void bindProperties(py::class_<Solver>& solver) {
           "file states. Infinite where nothing is stated.")
       .def_property_readonly(
           "joint_names", [](const Solver& s) { return tupleOf(s.joints()); },
-          "Names of the joints, from root to tip: the order of all arrays.")
+          "Names of the joints, from root to tip, of a tree in the order of the\n"
+          "description: the order of all arrays. Joints that mimic aren't among them.")
       .def_property_readonly("joint_types", &jointTypes,
                              "revolute, continuous or prismatic, of each joint. Positions of a\n"
                              "continuous joint that differ by whole turns are the same.")

@@ -38,7 +38,8 @@ void withWrenches(const ids::ConstStates& wrenches, const std::string& frame,
 
 /// Adds the wrench as the last argument of the call; returns the capability that computes with it.
 const ids::ExternalWrench& contactOf(const Solver& solver, SolverCall& call,
-                                     const py::object& wrench, const std::string& frame) {
+                                     const py::object& wrench, const std::string& frame,
+                                     const std::string& tip) {
   const auto& contact = solver.as<ids::ExternalWrench>(call.method());
   if (frame != "root" && frame != "tip") {
     throw ids::InvalidParameterValueException(ids::errorText(
@@ -46,14 +47,14 @@ const ids::ExternalWrench& contactOf(const Solver& solver, SolverCall& call,
         "'root' or 'tip': whose axes the wrench is expressed in", "'" + frame + "'"));
   }
   call.wrench("wrench", wrench);
-  return contact;
+  return tip.empty() ? contact : contact.externalWrenchAt(tip);
 }
 
 Floats externalTorques(const Solver& solver, const ArrayLike& q, const ArrayLike& wrench,
-                       const std::string& frame, const MaybeFloats& out) {
+                       const std::string& frame, const std::string& tip, const MaybeFloats& out) {
   SolverCall call("external_torques", solver.joints());
   call.input("q", q);
-  const auto& contact = contactOf(solver, call, wrench, frame);
+  const auto& contact = contactOf(solver, call, wrench, frame, tip);
   call.result("out", out, {solver.get().jointCount()});
   call.run([&] {
     withWrenches(call.in(1), frame, [&](const auto& wrenches) {
@@ -64,17 +65,24 @@ Floats externalTorques(const Solver& solver, const ArrayLike& q, const ArrayLike
 }
 
 Floats torques(const Solver& solver, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& qdd,
-               const MaybeArrayLike& wrench, const std::string& frame, const MaybeFloats& out) {
+               const MaybeArrayLike& wrench, const std::string& frame, const std::string& tip,
+               const MaybeFloats& out) {
   if (wrench.is_none() && frame != "root") {
     throw ids::InvalidParameterValueException(
         ids::errorText("torques: argument frame", "without effect", "a wrench whose axes it names",
                        "'" + frame + "' and no wrench", "give wrench=, or leave frame= out"));
   }
+  if (wrench.is_none() && !tip.empty()) {
+    throw ids::InvalidParameterValueException(
+        ids::errorText("torques: argument tip", "without effect", "a wrench that it exerts",
+                       "'" + tip + "' and no wrench", "give wrench=, or leave tip= out"));
+  }
   SolverCall call("torques", solver.joints());
   call.input("q", q);
   call.input("qd", qd);
   call.input("qdd", qdd);
-  const auto* const contact = wrench.is_none() ? nullptr : &contactOf(solver, call, wrench, frame);
+  const auto* const contact =
+      wrench.is_none() ? nullptr : &contactOf(solver, call, wrench, frame, tip);
   call.result("out", out, {solver.get().jointCount()});
   const auto in = [&call](std::size_t i) { return call.in(i); };
   call.run([&] {
@@ -85,6 +93,19 @@ Floats torques(const Solver& solver, const ArrayLike& q, const ArrayLike& qd, co
       contact->getTorquesBatch(in(0), in(1), in(2), wrenches, call.states(0));
     });
   });
+  return call.array(0);
+}
+
+Floats tipJacobianDerivative(const Solver& solver, const ArrayLike& q, const ArrayLike& qd,
+                             const std::string& tip, const MaybeFloats& out) {
+  SolverCall call("tip_jacobian_derivative", solver.joints());
+  call.input("q", q);
+  call.input("qd", qd);
+  const auto& first = solver.as<ids::Kinematics>(call.method());
+  const auto& kinematics = tip.empty() ? first : first.kinematicsOf(tip);
+  call.result("out", out, {6, solver.get().jointCount()});
+  call.run(
+      [&] { kinematics.getTipJacobianDerivativeBatch(call.in(0), call.in(1), call.matrices(0)); });
   return call.array(0);
 }
 
@@ -145,23 +166,28 @@ inline constexpr Quantity kPotentialEnergy{
 /// Methods with further arguments.
 void bindCalls(py::class_<Solver>& solver) {
   const py::kw_only keywords;
-  const py::arg_v frame = "frame"_a = "root", out = "out"_a = py::none();
+  const py::arg_v frame = "frame"_a = "root", tip = "tip"_a = "", out = "out"_a = py::none();
   const auto doc = [](const ResultText& text, const std::vector<std::string>& arguments) {
     return documented(text, arguments, Solver::kExample);
   };
   solver
       .def("torques", &torques, "q"_a, "qd"_a, "qdd"_a, keywords, "wrench"_a = py::none(), frame,
-           out,
+           tip, out,
            doc({"Joint torques tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q); with a wrench\n"
                 "+ J(q)^T wrench, as in external_torques().",
                 "(n,) or (N, n)", "arm.torques(q, qd, qdd).shape\n(100, 6)"},
-               {"q", "qd", "qdd", "wrench", "frame", "out"})
+               {"q", "qd", "qdd", "wrench", "frame", "tip", "out"})
                .c_str())
-      .def("external_torques", &externalTorques, "q"_a, "wrench"_a, frame, keywords, out,
+      .def("external_torques", &externalTorques, "q"_a, "wrench"_a, frame, keywords, tip, out,
            doc({"J(q)^T wrench: what the joints add so that the tip exerts the wrench on its\n"
                 "surroundings.",
                 "(n,) or (N, n)", "arm.external_torques(q, [0, 0, -20, 0, 0, 0]).shape\n(100, 6)"},
-               {"q", "wrench", "frame", "out"})
+               {"q", "wrench", "frame", "tip", "out"})
+               .c_str())
+      .def("tip_jacobian_derivative", &tipJacobianDerivative, "q"_a, "qd"_a, keywords, tip, out,
+           doc({kTipJacobianDerivative.text.formula, kTipJacobianDerivative.text.shape,
+                kTipJacobianDerivative.text.example},
+               {"q", "qd", "tip", "out"})
                .c_str())
       .def("friction_vector", &frictionVector, "qd"_a, keywords, "q"_a = py::none(), out,
            doc({"Friction torques f(q, qd); zero if the solver has no friction model or was made\n"
@@ -181,12 +207,6 @@ void bindCalls(py::class_<Solver>& solver) {
 
 }  // namespace
 
-/// Of a solver that gives no regressor, joints.
-Eigen::Index linkCount(const Solver& solver) {
-  const auto* const regressor = solver.find<const ids::Regressor>();
-  return regressor != nullptr ? regressor->linkCount() : solver.get().jointCount();
-}
-
 void bindQuantities(py::class_<Solver>& solver) {
   using S = const Solver&;
   using Part = const PartOfCall&;
@@ -199,11 +219,6 @@ void bindQuantities(py::class_<Solver>& solver) {
       .add(kTipPose,
            [](S s, Part p) {
              s.as<ids::Kinematics>(p).getTipPoseBatch(p.in(0), p.matrices(0), p.states(1));
-           })
-      .add(kTipJacobianDerivative,
-           [](S s, Part p) {
-             s.as<ids::Kinematics>(p).getTipJacobianDerivativeBatch(p.in(0), p.in(1),
-                                                                    p.matrices(0));
            })
       .add(kCoriolisMatrix,
            [](S s, Part p) {

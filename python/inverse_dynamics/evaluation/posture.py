@@ -127,7 +127,7 @@ def carried_joints(robot: RobotDescription, chain: Sequence[str], root: str = ""
         joint.name: "m" if joint.type == "prismatic" else "rad"
         for joint in others
         if joint.type in ("revolute", "continuous", "prismatic")
-        and not joint.mimics
+        and joint.mimic is None
         and joint.parent not in still
     }
 

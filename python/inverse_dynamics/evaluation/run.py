@@ -56,7 +56,7 @@ class Overrides(TypedDict, total=False):
     friction: bool | None
     urdf: Path | str | None
     root: str | None
-    tip: str | None
+    tip: str | Sequence[str] | None
     gravity: tuple[float, float, float] | None
     topic: str | None
     joints: Sequence[str] | None

@@ -14,19 +14,12 @@ from inverse_dynamics._core import RobotDescription, effort_options, recorded_na
 from inverse_dynamics.errors import RobotError, SolverError
 from inverse_dynamics.robots.descriptions import parse_description, read_description
 from inverse_dynamics.robots.dh_tables import guess_of
-from inverse_dynamics.robots.located_yaml import read_mapping
 from inverse_dynamics.robots.robots import RIGID_BODY, Robot
 from inverse_dynamics.robots.solvers import brings_own_model, make_solver, open_solver
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
     from inverse_dynamics._core import Solver
     from inverse_dynamics.arrays import Floats
-
-
-_LIMITS = ("lower", "upper", "velocity", "effort", "acceleration", "deceleration", "jerk")
 
 
 class Arm:
@@ -49,7 +42,7 @@ class Arm:
             # also where the solver doesn't read it
             parse_description(description, robot.urdf)
             try:
-                self.described = RobotDescription(description)
+                RobotDescription(description)
             except RobotError as error:
                 raise RobotError(f"{robot.urdf}: {error}") from error
         self.units = tuple(
@@ -62,14 +55,8 @@ class Arm:
 
         The description's, or without one the model's; absent: of joints that have none.
         """
-        robot = self.robot
-        limits: Sequence[Mapping[str, float]] = [{}] * len(self.joint_names)
-        if self.description:
-            chain = self.described.chain(self.joint_names, robot.root)
-            limits = [joint.limits for joint in chain]
-        elif robot.model is not None:
-            limits = _model_limits(robot.model)
-        return np.array([of_joint.get(name, absent) for of_joint in limits])
+        stated = self.solver.limits.get(name, np.full(len(self.joint_names), np.inf))
+        return np.where(np.isfinite(stated), stated, absent)
 
     @cached_property
     def guess(self) -> str:
@@ -97,15 +84,3 @@ class Arm:
                     made.set_payload(name, **body)
                 made.set_gravity(self._given.gravity)
         return made
-
-
-def _model_limits(file: Path) -> list[dict[str, float]]:
-    """Stated limits of the joints of a model file, which a solver has read."""
-    joints = read_mapping(file, RobotError).required("joints").entries()
-    stated = [joint.mapping().optional("limits") for joint in joints]
-    return [
-        {name: one.number() for name in _LIMITS if (one := limits.mapping().optional(name))}
-        if limits
-        else {}
-        for limits in stated
-    ]

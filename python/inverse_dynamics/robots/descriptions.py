@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
+    from inverse_dynamics._core import RobotDescription
+
 _MOST_LEVELS = 50
 
 
@@ -53,6 +55,20 @@ def read_description(file: Path) -> str:
     if not text.lstrip().startswith("<"):
         raise RobotError(f"{file}: isn't XML; expected a URDF, got {shown(text.strip(), 20)}")
     return text
+
+
+def positions_of(
+    robot: RobotDescription, joints: Sequence[str]
+) -> dict[str, tuple[int, float, float]]:
+    """Positions of these joints and those that mimic them, by name, as (i, factor, offset): factor q[i] + offset."""
+    moves = {name: (i, 1.0, 0.0) for i, name in enumerate(joints)}
+    for _ in robot.joints:  # a joint may mimic one that mimics another
+        for joint in robot.joints:
+            if joint.mimic is not None and joint.name not in moves and joint.mimic[0] in moves:
+                leader, multiplier, offset = joint.mimic
+                i, factor, start = moves[leader]
+                moves[joint.name] = (i, multiplier * factor, multiplier * start + offset)
+    return moves
 
 
 def parse_description(text: str, where: object = "robot description") -> Element:

@@ -46,7 +46,7 @@ def robot_text(robot: Robot, file: Path) -> str:
         *_path("urdf", robot.urdf, file),
         *_path("model", robot.model, file),
         _key("root", robot.root, yaml_text(robot.root), "first link of the chain"),
-        _key("tip", robot.tip, yaml_text(robot.tip), "last link of the chain"),
+        _key("tip", robot.tip, yaml_text(robot.tip), "last link of the chain; several, with commas: those of a tree"),
         _key("gravity", robot.gravity, yaml_list(gravity), "m/s^2, in the frame of the root"),
         _key("topic", robot.topic, yaml_text(robot.topic or "/joint_states"), "of recordings"),
         _key("joints", robot.joints, names, "names in the recording, in the order of the chain"),

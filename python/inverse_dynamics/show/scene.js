@@ -6,7 +6,7 @@
 //   scene.draw(q);   // q: joint positions, rad or m
 //
 // motion: some joint positions of the recording; the view is made wide enough for all of them.
-// A link: {parent, joint, kind, axis, pose, shapes}. parent: index or -1; joint: index in q or -1 (fixed);
+// A link: {parent, joint, factor, offset, kind, axis, pose, shapes}. parent: index or -1; joint: index in q or -1 (fixed);
 // pose: of its frame in the parent's at q = 0; a shape: {kind, size, pose, color}, of kind mesh with
 // {middle, step, vertices, triangles} (figures/scene.py). Poses are 4 x 4, column by column. The z axis points up, lengths in m.
 "use strict";
@@ -190,7 +190,7 @@ function linkPoses(links, q) {
   for (const link of links) {
     const pose = (poses[link.parent] || new DOMMatrix()).multiply(new DOMMatrix(link.pose));
     if (link.joint >= 0) {
-      const value = q[link.joint];
+      const value = link.factor * q[link.joint] + link.offset;
       if (link.kind === "prismatic") pose.translateSelf(...link.axis.map((component) => component * value));
       else pose.rotateAxisAngleSelf(...link.axis, value * 180 / Math.PI);
     }

@@ -13,7 +13,7 @@ from __future__ import annotations
 import base64
 import math
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,11 @@ from inverse_dynamics._core import DescribedJoint, RobotDescription
 from inverse_dynamics.decimals import decimal
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.installation.extras import MissingPackageError
-from inverse_dynamics.robots.descriptions import parse_description, read_description
+from inverse_dynamics.robots.descriptions import (
+    parse_description,
+    positions_of,
+    read_description,
+)
 from inverse_dynamics.show.meshes import MeshError, MeshPart, find_mesh, read_mesh
 from inverse_dynamics.wording import counted, harmless, shown
 
@@ -41,7 +45,8 @@ MOST_TRIANGLES = 24_000  # of a robot's meshes together: 0.4 MB of a page
 class Scene:
     """Links in an order in which parents come first, and what of them isn't drawn as described.
 
-    A link: parent (index or -1), joint (index of the joints that move or -1), kind, axis, pose in its parent
+    A link: parent (index or -1), joint (index of the joints that move or -1), factor and offset (the joint's position
+    is factor q + offset: 1 and 0 unless it mimics that joint), kind, axis, pose in its parent
     (4 x 4, column by column, m) and shapes: kind, pose in the link, color (red, green, blue in 0..1), and
     size (as in the URDF, m) or, of a mesh, what encoded_mesh() gives.
     """
@@ -61,16 +66,16 @@ def read_scene(file: Path, joints: Sequence[str]) -> Scene:
 def scene_of(urdf: str, joints: Sequence[str], directory: Path) -> Scene:
     """The scene of a URDF's text; names of meshes are relative to the directory."""
     robot = RobotDescription(urdf)
+    moves = positions_of(robot, joints)
     reader = _Shapes(parse_description(urdf), directory)
     by_parent: dict[str, list[DescribedJoint]] = {}
     for joint in robot.joints:
         by_parent.setdefault(joint.parent, []).append(joint)
-    index = {name: i for i, name in enumerate(joints)}
     links: list[dict[str, Any]] = []
     bare: list[bool] = []  # of each link: whether something of it isn't drawn
     waiting: list[tuple[str, int, DescribedJoint | None]] = [(robot.root, -1, None)]
     for name, parent, above in waiting:  # grows
-        links.append(_link(parent, above, index, reader.by_link[name]))
+        links.append(_link(parent, above, moves, reader.by_link[name]))
         bare.append(name in reader.missing)
         here = len(links) - 1
         waiting += [(child.child, here, child) for child in by_parent.get(name, [])]
@@ -140,13 +145,13 @@ def base64_of(array: NDArray[Any], dtype: str) -> str:
 def _link(
     parent: int,
     joint: DescribedJoint | None,
-    index: dict[str, int],
+    moves: Mapping[str, tuple[int, float, float]],
     shapes: list[dict[str, Any]],
 ) -> dict[str, Any]:
     link = {"parent": parent, "joint": -1, "kind": "fixed", "axis": [0.0, 0.0, 1.0]}
     pose = np.eye(4)
     if joint is not None:
-        link["joint"] = index.get(joint.name, -1)
+        link["joint"], link["factor"], link["offset"] = moves.get(joint.name, (-1, 1.0, 0.0))
         link["kind"] = joint.type
         link["axis"] = joint.axis.tolist()
         pose = joint.pose

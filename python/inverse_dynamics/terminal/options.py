@@ -246,7 +246,7 @@ _SHARED = dict(
             action="append",
         ),
         _entry("--root LINK", "first link of the chain"),
-        _entry("--tip LINK", "last link of the chain"),
+        _entry("--tip LINK[,LINK...]", "last link of the chain; several, or '*': those of a tree"),
         _entry(
             "--gravity X,Y,Z",
             "gravitational acceleration [m/s^2] in the frame of the root link (usually 0,0,-9.81)",

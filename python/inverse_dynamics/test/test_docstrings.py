@@ -88,7 +88,7 @@ def test_bound_functions_that_users_call_say_their_arguments_and_results():
 
 def test_bound_functions_have_signatures_with_types():
     signature = inspect.signature(inverse_dynamics.Solver.torques)
-    assert list(signature.parameters) == ["self", "q", "qd", "qdd", "wrench", "frame", "out"]
+    assert list(signature.parameters) == ["self", "q", "qd", "qdd", "wrench", "frame", "tip", "out"]
     assert signature.parameters["q"].annotation == "numpy.typing.ArrayLike"
     assert signature.parameters["frame"].default == "root"
     assert signature.parameters["out"].kind is inspect.Parameter.KEYWORD_ONLY
