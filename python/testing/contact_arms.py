@@ -140,7 +140,7 @@ class ContactArm:
         self.robot = SimulatedRobot.from_urdf(
             urdf_of(name), *CHAINS[name], friction=ModelFriction.of(identified)
         )
-        self.velocity, self.tip = self.robot.chain.velocity, self.robot.chain.tip
+        self.velocity, self.tip = self.robot.chain.velocity, self.robot.chain.tips[0]
 
     def place(self, q: Floats, link: str = "") -> tuple[Floats, Floats]:
         """Of a link's origin, the tip's if none is given: position (3,) and Jacobian (6, n), by MuJoCo."""

@@ -27,6 +27,8 @@ import numpy as np
 
 from inverse_dynamics._core import FastModel
 from inverse_dynamics.robots.link_parameters import inertia_matrix, pseudo_inertia
+from inverse_dynamics.simulation.errors import SimulationError
+from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.simulation.limits import MotionLimits
     from inverse_dynamics.simulation.model import SimulatedRobot
+    from inverse_dynamics.simulation.urdf import UrdfChain
 
 PARAMETERS_PER_LINK = 10
 OWN = 7  # unknowns that belong to one joint: rotor, viscous, step, offset, load, width, shift
@@ -60,7 +63,9 @@ _BLOCK = 2000  # states at a time
 def engine_of(robot: SimulatedRobot) -> FastModel:
     """The chain as the description has it, with the payload."""
     chain = robot.chain
-    return FastModel.from_urdf(chain.urdf, root=chain.root, tip=chain.tip, gravity=robot.gravity)
+    return FastModel.from_urdf(
+        chain.urdf, root=chain.root, tip=list(chain.tips), gravity=robot.gravity
+    )
 
 
 def base_count(engine: FastModel) -> int:
@@ -68,8 +73,8 @@ def base_count(engine: FastModel) -> int:
     joints = len(engine.joint_names)
     random = np.random.default_rng(0)
     q, qd, qdd = random.uniform(-np.pi, np.pi, (3, 20 * joints, joints))
-    Y = engine.regressor(q, qd, qdd).reshape(-1, PARAMETERS_PER_LINK * joints)
-    values = np.linalg.svd(Y, compute_uv=False)
+    Y = engine.regressor(q, qd, qdd)
+    values = np.linalg.svd(Y.reshape(-1, Y.shape[2]), compute_uv=False)
     # rounding leaves about 1e-15 of the greatest one where there is none
     return int((values > 1e-8 * values[0]).sum())
 
@@ -118,6 +123,8 @@ class Unknowns:
 
         payload: the ten parameters of a body at the tip instead; what friction may have changed is a nuisance.
         """
+        if payload:
+            _require_chain(robot.chain)
         model = engine_of(robot)
         links = model.parameters.reshape(-1, PARAMETERS_PER_LINK)
         total = max(float(links[:, 0].sum()), 1e-3)
@@ -229,6 +236,14 @@ class Unknowns:
         Z = self.rows(*states) * self.predicted
         variances = np.einsum("kjm,kjm->kj", Z @ V, Z)
         return np.asarray(np.sqrt(np.maximum(variances, 0.0)).mean(axis=0))
+
+
+def _require_chain(chain: UrdfChain) -> None:
+    if len(chain.tips) > 1 or len(chain.moves) > len(chain.joint_names):
+        raise SimulationError(
+            f"payload: expected a chain, got a tree with {counted(len(chain.tips), 'tip')}; name the one that "
+            "carries it as --tip"
+        )
 
 
 def _own_scales(limits: MotionLimits) -> Floats:

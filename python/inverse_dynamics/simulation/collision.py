@@ -72,7 +72,7 @@ class ContactChecker:
 
     def _pairs(self, q: Floats) -> list[tuple[float, tuple[int, int]]]:
         """Distance and geoms of what is within the clearance."""
-        self._data.qpos[self.robot.dofs] = q
+        self._data.qpos[:] = self.robot.S @ q + self.robot.s
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
         if self._data.ncon == 0:

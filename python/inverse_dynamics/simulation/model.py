@@ -10,7 +10,8 @@ What MuJoCo would do to a URDF on its own, and what is done about it:
   compiles, then the URDF's inertia is written back;
 - it takes `<dynamics>` for damping and friction: set to zero; the chosen friction has its own law;
 - it pushes at position limits and contacts: switched off, since a trajectory must stay clear of both (limits.py and
-  collision.py check that).
+  collision.py check that);
+- it lets joints that mimic others lag behind them: the springs that hold them are made stiff.
 """
 
 from __future__ import annotations
@@ -40,6 +41,11 @@ GRAVITY: Gravity = (0.0, 0.0, -9.81)
 
 MOUNTS = {"floor": (0.0, 0.0, -9.81), "wall": (-9.81, 0.0, 0.0), "ceiling": (0.0, 0.0, 9.81)}
 """Gravity in the frame of the root link: its z axis points up, away from the wall (x up), or down."""
+
+_STIFF = (
+    0.002,
+    1.0,
+)  # s, ratio: time constant and damping of the springs that hold joints which mimic others
 
 _NEAR = 1e-7  # rad/s; slopes between closer velocities are rounding
 
@@ -111,11 +117,16 @@ class JointFriction(Friction):
 
 @dataclass(frozen=True)
 class SimulatedRobot:
-    """A chain and its MuJoCo model. One simulation at a time: friction and step size are set in the model."""
+    """A chain or tree and its MuJoCo model. One simulation at a time: friction and step size are set in the model.
+
+    MuJoCo's nv positions are S q + s: joints may mimic others.
+    """
 
     chain: UrdfChain
     model: mujoco.MjModel
     dofs: Floats = field(repr=False)  # (n,) index of each joint in MuJoCo's vectors
+    S: Floats = field(repr=False)  # (nv, n)
+    s: Floats = field(repr=False)  # (nv,)
     gravity: Gravity
     friction: Friction | None
 
@@ -131,7 +142,7 @@ class SimulatedRobot:
         friction: Friction | None = None,
         rotor_inertia: Floats | None = None,
     ) -> SimulatedRobot:
-        """Model of the chain from root to tip (empty: the URDF's root and its only leaf).
+        """Model of the chain from root to tip, or of a tree; as chain_from_urdf() takes them.
 
         rotor_inertia: (n,) kg m^2 (prismatic kg), seen at the joint.
         """
@@ -149,6 +160,10 @@ class SimulatedRobot:
             ) from error
         _write_true_inertia(model, inertia)
         dofs = np.array([model.joint(name).dofadr[0] for name in chain.joint_names])
+        S, s = np.zeros((model.nv, len(dofs))), np.zeros(model.nv)
+        for name, (i, factor, offset) in chain.moves.items():
+            S[model.joint(name).dofadr[0], i], s[model.joint(name).dofadr[0]] = factor, offset
+        model.eq_solref[:] = _STIFF
         if isinstance(friction, JointFriction):
             _check_friction(friction, len(dofs))
         if rotor_inertia is not None:
@@ -164,7 +179,7 @@ class SimulatedRobot:
         model.opt.disableflags |= int(
             mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT
         )
-        return cls(chain, model, dofs, gravity, friction)
+        return cls(chain, model, dofs, S, s, gravity, friction)
 
     def new_data(self) -> mujoco.MjData:
         """State of a simulation: q = qd = 0."""
@@ -176,8 +191,8 @@ class SimulatedRobot:
         All (N, n), order of `chain.joint_names`; payload and gravity as in this model.
         """
         data, torque = self.new_data(), np.empty(self.model.nv)
-        states = np.zeros((3, len(q), self.model.nv))  # in MuJoCo's order
-        states[:, :, self.dofs] = q, qd, qdd
+        states = np.array([q, qd, qdd]) @ self.S.T  # in MuJoCo's order
+        states[0] += self.s
         out = np.empty(states.shape[1:])
         for k, (position, velocity, acceleration) in enumerate(states.transpose(1, 0, 2)):
             data.qpos[:], data.qvel[:] = position, velocity
@@ -185,16 +200,16 @@ class SimulatedRobot:
             mujoco.mj_fwdVelocity(self.model, data)
             mujoco.mj_mulM(self.model, data, torque, acceleration)
             out[k] = torque + data.qfrc_bias
-        return out[:, self.dofs]
+        return out @ self.S
 
     def inertia_matrix(self, q: Floats) -> Floats:
         """H(q), (n, n)."""
         data = self.new_data()
-        data.qpos[self.dofs] = q
+        data.qpos[:] = self.S @ q + self.s
         mujoco.mj_fwdPosition(self.model, data)
         full = np.zeros((self.model.nv, self.model.nv))
         mujoco.mj_fullM(self.model, data, full)
-        return np.array(full[np.ix_(self.dofs, self.dofs)])
+        return self.S.T @ full @ self.S
 
 
 def spec_of(urdf: str) -> tuple[mujoco.MjSpec, list[str]]:
@@ -247,7 +262,7 @@ def _loaded(chain: UrdfChain, payload: Payload) -> UrdfChain:
     load = (
         f'<link name="ids_payload"><inertial><origin xyz="{place}"/><mass value="{float(payload.mass)!r}"/>'
         f"<inertia {moments}/></inertial></link>"
-        f'<joint name="ids_payload" type="fixed"><parent link={quoteattr(chain.tip)}/>'
+        f'<joint name="ids_payload" type="fixed"><parent link={quoteattr(chain.tips[0])}/>'
         '<child link="ids_payload"/></joint>'
     )
     return replace(chain, urdf=chain.urdf.removesuffix("</robot>") + f"{load}</robot>")

@@ -30,6 +30,7 @@ from inverse_dynamics.simulation.model import (
     SimulatedRobot,
 )
 from inverse_dynamics.simulation.urdf import chain_from_urdf, with_held_joints
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -79,8 +80,13 @@ def description_of(robot: Robot) -> str:
 
 
 def carried_by(solver: Solver) -> Payload | None:
-    """All payloads of a solver as one body."""
+    """All payloads of a solver as one body. Raises SimulationError: bodies at other tips than the first."""
     bodies = solver.payloads.values()
+    if others := {tip for body in bodies if (tip := body.get("tip", solver.tip)) != solver.tip}:
+        raise SimulationError(
+            f"payload: expected all at the first tip, {solver.tip}, got one at {listed(sorted(others))}; name its tip "
+            "first, or write the body into the description"
+        )
     mass = sum(body["mass"] for body in bodies)
     if not mass:
         return None

@@ -150,7 +150,7 @@ def drive(
     model, data, dofs = robot.model, robot.new_data(), robot.dofs
     half = int(np.ceil(0.5 / rate / LONGEST_STEP))
     model.opt.timestep = 0.5 / rate / half
-    data.qpos[dofs], data.qvel[dofs] = q_start, qd_start
+    data.qpos[:], data.qvel[:] = robot.S @ q_start + robot.s, robot.S @ qd_start
     q, qd, qdd, effort, friction = (np.empty((ticks, len(dofs))) for _ in range(5))
     for k in range(ticks):
         effort[k] = command(k, data.qpos[dofs], data.qvel[dofs])

@@ -240,7 +240,7 @@ def simulate(
         "robot": robot.name,
         "joints": list(chain.joint_names),
         "root": chain.root,
-        "tip": chain.tip,
+        "tip": ",".join(chain.tips),
         "gravity": _plain(simulated.gravity),
         "rate": rate,
         "duration": float(duration),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The chain of a URDF, with the limits that MuJoCo drops.
+"""The chain or tree of a URDF, with the limits that MuJoCo drops.
 
     chain = chain_from_urdf(Path("ur10.urdf").read_text(), root="base_link", tip="tool0")
     chain.joint_names, chain.lower, chain.urdf
@@ -16,30 +16,32 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics._core import FastModel, RobotDescription
+from inverse_dynamics._core import RobotDescription, Solver
 from inverse_dynamics.errors import RobotError, SolverError
-from inverse_dynamics.robots.descriptions import parse_description
+from inverse_dynamics.robots.descriptions import parse_description, positions_of
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Container, Mapping, Sequence
 
+    from inverse_dynamics._core import DescribedJoint
     from inverse_dynamics.arrays import Floats
 
 
 @dataclass(frozen=True)
 class UrdfChain:
-    """A chain of movable joints from root to tip, and the URDF made ready for MuJoCo.
+    """A chain of movable joints from root to tip, or a tree, and the URDF made ready for MuJoCo.
 
-    n joints. A limit that the URDF doesn't state is infinite.
+    n joints that mimic no other. A limit that the URDF doesn't state is infinite.
     """
 
     name: str
     root: str
-    tip: str
+    tips: tuple[str, ...]  # several of a tree; the first carries a payload
     joint_names: tuple[str, ...]
-    moving_links: tuple[str, ...]  # n, the link right behind each joint
+    moves: dict[str, tuple[int, float, float]]  # as positions_of() has it, of all joints that move
+    moving_links: tuple[str, ...]  # the link right behind each of them
     lower: Floats  # (n,) rad (prismatic m)
     upper: Floats  # (n,)
     velocity: Floats  # (n,) rad/s (prismatic m/s)
@@ -53,40 +55,61 @@ class UrdfChain:
 
 
 def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
-    """The chain from link `root` to link `tip`; empty names mean the URDF's root and its only leaf.
+    """The chain from link `root` to link `tip`, or the tree to several; as Solver() takes them.
 
     Movable joints that don't lie between the two are locked at zero. Raises SimulationError.
     """
     try:
         robot = parse_description(text)
-        names = FastModel.from_urdf(text, root=root, tip=tip).joint_names
+        solver = Solver(urdf=text, root=root, tip=tip)
+        names, stated = solver.joint_names, solver.limits
         described = RobotDescription(text)
-        joints = described.chain(names, root)
     except (SolverError, RobotError) as error:
         reason = str(error).removeprefix("robot description: ")
         reason = reason.removesuffix(", or set allow_massless to true")  # MuJoCo can't
         raise SimulationError(f"robot description: {reason}") from error
 
-    def limits(name: str, absent: float) -> Floats:
-        return np.array([joint.limits.get(name, absent) for joint in joints])
+    tips = solver.tip_names or (solver.tip,)
+    joints = _joints_to(tips, described)
+    moves = positions_of(described, names)
+    order = [joint.name for joint in described.joints] if solver.tip_names else names
+    moves = {name: moves[name] for name in order if name in moves and name in joints}
 
+    def limit(name: str) -> Floats:
+        return np.asarray(stated.get(name, np.full(len(names), np.inf)))
+
+    damping, friction = np.zeros((2, len(names)))
+    for name, (i, factor, _) in moves.items():
+        damping[i] += factor**2 * joints[name].damping
+        friction[i] += abs(factor) * joints[name].friction
     return UrdfChain(
         name=described.name,
         root=root or described.root,
-        tip=tip or described.tip(names[-1]),
+        tips=tips,
         joint_names=names,
-        moving_links=tuple(joint.child for joint in joints),
-        lower=limits("lower", -np.inf),
-        upper=limits("upper", np.inf),
-        velocity=limits("velocity", np.inf),
-        effort=limits("effort", np.inf),
-        acceleration=np.minimum(limits("acceleration", np.inf), limits("deceleration", np.inf)),
-        jerk=limits("jerk", np.inf),
-        damping=np.array([joint.damping for joint in joints]),
-        friction=np.array([joint.friction for joint in joints]),
-        notes=_prepare_for_mujoco(robot, names),
+        moves=moves,
+        moving_links=tuple(joints[name].child for name in moves),
+        lower=limit("lower"),
+        upper=limit("upper"),
+        velocity=limit("velocity"),
+        effort=limit("effort"),
+        acceleration=np.minimum(limit("acceleration"), limit("deceleration")),
+        jerk=limit("jerk"),
+        damping=damping,
+        friction=friction,
+        notes=_prepare_for_mujoco(robot, moves),
         urdf=ElementTree.tostring(robot, encoding="unicode"),
     )
+
+
+def _joints_to(tips: Sequence[str], robot: RobotDescription) -> dict[str, DescribedJoint]:
+    """The joints above the tips, by name."""
+    by_child = {joint.child: joint for joint in robot.joints}
+    found = {}
+    for link in tips:
+        while (joint := by_child.get(link)) is not None:
+            found[joint.name], link = joint, joint.parent
+    return found
 
 
 def with_held_joints(text: str, positions: Mapping[str, float]) -> str:
@@ -129,12 +152,14 @@ def _roll_pitch_yaw(R: Floats) -> list[float]:
     return [float(roll), float(pitch), float(yaw)]
 
 
-def _prepare_for_mujoco(robot: ElementTree.Element, chain: tuple[str, ...]) -> tuple[str, ...]:
+def _prepare_for_mujoco(robot: ElementTree.Element, chain: Container[str]) -> tuple[str, ...]:
     """Leaves out meshes, which need files; locks joints beside the chain."""
     notes = []
     for joint in robot.findall("joint"):
         if joint.get("type") != "fixed" and joint.get("name") not in chain:
             joint.set("type", "fixed")
+            for mimic in joint.findall("mimic"):
+                joint.remove(mimic)
             notes.append(f"joint {joint.get('name')} is locked at zero")
     for link in robot.findall("link"):
         for kind in ("visual", "collision"):

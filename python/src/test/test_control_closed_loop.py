@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+import two_arms
 from example_robots import RIGID_BODY
 from simulation_arms import CHAINS, HOME, pendulum, simulated, urdf_of
 
@@ -303,3 +304,18 @@ def test_a_joint_turns_ten_times_whatever_its_driver_reports(law: str) -> None:
         found = turn(report, report_reference)
         np.testing.assert_allclose(found.q, expected.q, rtol=0, atol=1e-9)
         np.testing.assert_allclose(found.effort, expected.effort, rtol=0, atol=1e-6)
+
+
+def test_gravity_compensation_holds_both_arms_and_the_torso() -> None:
+    robot = SimulatedRobot.from_urdf(two_arms.URDF, tip="*")
+    tree = Solver(urdf=two_arms.URDF, tip="*")
+    posture = np.linspace(-0.5, 0.5, 9)
+    law = GravityCompensation(tree, LawOptions(effort_limit=robot.chain.effort, damping_rate=5.0))
+
+    def command(k: int, q: Floats, qd: Floats) -> Floats:
+        tau, status = law.update(q, qd, PERIOD)
+        assert status == Status.OK
+        return tau
+
+    response = drive(robot, command, posture, np.zeros(9), rate=RATE, ticks=2 * RATE)
+    assert np.abs(response.q - posture).max() < 1e-4  # the springs of joints that mimic give way

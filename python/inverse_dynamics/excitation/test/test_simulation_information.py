@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import two_arms
 from simulation_arms import simulated, two_links
 
 from inverse_dynamics.excitation import excitation as search
@@ -22,6 +23,7 @@ from inverse_dynamics.excitation.information import (
 )
 from inverse_dynamics.robots.link_parameters import turned
 from inverse_dynamics.simulation.collision import ContactChecker
+from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.model import SimulatedRobot
 
 
@@ -179,3 +181,15 @@ def test_family_begins_and_ends_in_one_pose_and_rests_between_its_parts() -> Non
         family.states(x, basis), trajectory.at(np.linspace(0.0, 20.0, 77)), strict=True
     ):
         np.testing.assert_allclose(given, expected, atol=1e-9)
+
+
+def test_unknowns_of_a_tree_are_those_of_all_its_links() -> None:
+    robot = SimulatedRobot.from_urdf(two_arms.URDF, tip="*")
+    unknowns = ExcitationOptions().unknowns(robot)
+    states = unknowns.random_states(20)
+    Z, tau = unknowns.rows_and_torques(*states)
+    assert Z.shape == (20, 9, 10 * 10 + OWN * 9)
+    np.testing.assert_allclose(tau, robot.torques(*states), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(Z[:, :, :100] @ unknowns.model.parameters, tau, rtol=0, atol=1e-9)
+    with pytest.raises(SimulationError, match="expected a chain, got a tree with 3 tips"):
+        ExcitationOptions(payload=True).unknowns(robot)

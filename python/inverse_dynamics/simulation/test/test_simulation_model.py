@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import json
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+import two_arms
 from simulation_arms import (
     CHAINS,
     joint,
@@ -18,9 +20,14 @@ from simulation_arms import (
     two_links,
 )
 
-from inverse_dynamics import FastModel
+from inverse_dynamics import FastModel, Solver
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.model import JointFriction, Payload, SimulatedRobot
+from inverse_dynamics.simulation.modelled import carried_by
+from inverse_dynamics.simulation.physics import drive
+
+if TYPE_CHECKING:
+    from inverse_dynamics.arrays import Floats
 
 G = 9.81
 ZERO = np.zeros((1, 1))
@@ -166,9 +173,9 @@ def test_joints_beside_the_chain_are_locked_and_said_so() -> None:
             "expected revolute, continuous, prismatic or fixed, got floating",
         ),
         (
-            two_links().replace("<axis", '<mimic joint="fold"/><axis', 1),
+            two_links().replace("<axis", '<mimic joint="shoulder"/><axis', 1),
             {},
-            "joint shoulder: <mimic>: expected a joint that moves by itself",
+            "joint shoulder: <mimic>: expected a joint that follows another one",
         ),
         (
             robot(link("base"), link("arm"), joint("swing", "base", "arm")),
@@ -212,3 +219,31 @@ def test_meshes_are_left_out() -> None:
     urdf = pendulum().replace('<link name="arm">', f'<link name="arm">{mesh}')
     assert mesh in urdf
     assert "collision mesh" in SimulatedRobot.from_urdf(urdf).chain.notes[0]
+
+
+def test_joints_that_mimic_follow_in_simulation_too() -> None:
+    robot = SimulatedRobot.from_urdf(two_arms.URDF, tip="*")
+    tree = Solver(urdf=two_arms.URDF, tip="*")
+    q = np.zeros(9)
+
+    def command(k: int, q: Floats, qd: Floats) -> Floats:
+        return tree.torques(q, qd, np.array([0.3, 0, 0, 0, 0.2, 0, 0, 0, 0.4]) - 2 * qd)
+
+    response = drive(robot, command, q, q, rate=500, ticks=500)
+    np.testing.assert_allclose(
+        response.effort[20:],  # first the springs that hold them swing
+        tree.torques(response.q, response.qd, response.qdd)[20:],
+        atol=1e-3,
+    )
+    assert response.q[-1, 8] > 0.05
+
+
+def test_payloads_at_other_tips_than_the_first_are_refused() -> None:
+    tree = Solver(urdf=two_arms.URDF, tip=two_arms.ARMS)
+    tree.set_payload("first", 1.0, tip="left_tool")
+    assert carried_by(tree).mass == 1.0
+    tree.set_payload("other", 1.0, tip="right_tool")
+    with pytest.raises(
+        SimulationError, match="expected all at the first tip, left_tool, got one at right_tool"
+    ):
+        carried_by(tree)
