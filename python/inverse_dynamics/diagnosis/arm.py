@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cache
-from typing import TYPE_CHECKING
+from functools import cache, partial
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from inverse_dynamics._core import FastModel, RobotDescription
 from inverse_dynamics.errors import RobotError, SolverError
+from inverse_dynamics.robots.descriptions import positions_of
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.robots.solvers import brings_own_model
 
@@ -32,14 +33,25 @@ _BODY = "cause"  # among the solver's payloads
 _REACH = 0.1  # m: a body's torques are linear in mass and first moment, but for a small moment of inertia
 
 
+class Carrier(NamedTuple):
+    """A tip that bodies are fixed to.
+
+    loaded: (4, N, n) torques of motions for 1 kg at the tip, and for first moments of 1 kg m along x, y, z.
+    """
+
+    tip: str  # empty: the only one
+    carried: float  # kg of the payloads that the solver has
+    loaded: Compute
+
+
 @dataclass(frozen=True)
 class ArmModel:
     """Functions that compute torques of motions (N, n); n joints.
 
     torques: (N, n) with friction. gravity: (N, n) of positions.
     pulled: (3, N, n) torques of positions for 1 m/s^2 of gravity along x, y, z of the root.
-    loaded: (4, N, n) torques of motions for 1 kg at the tip, and for first moments of 1 kg m along x, y, z.
-    links: (2 n, N, n) torques of motions for the mass of each link, then for its mass and inertia.
+    links: (2 l, N, n) torques of motions for the mass of each link, then for its mass and inertia. link_joints: which
+    of the joints, or of those that mimic it, moves each link.
     """
 
     torques: Compute
@@ -47,10 +59,10 @@ class ArmModel:
     friction: Callable[[Floats, Floats], Floats] | None = None  # of q, qd; None: it has none
     gravity_direction: Floats | None = None  # (3,) m/s^2
     pulled: Callable[[Floats], Floats] | None = None
-    loaded: Compute | None = None
-    carried: float = 0.0  # kg of the payloads that the solver has
+    carriers: tuple[Carrier, ...] = ()
     links: Compute | None = None
     link_names: tuple[str, ...] = ()
+    link_joints: tuple[int, ...] = ()
     mass: float = 0.0  # kg of the links; 0: it isn't known
     compared_without_gravity: bool = False
     joint_types: tuple[str, ...] = ()  # revolute, continuous, prismatic; none: all are revolute
@@ -92,11 +104,11 @@ def arm_model(arm: Arm, *, without_gravity: bool = False) -> ArmModel:
             turned().set_gravity(before)
         return np.array(parts)
 
-    def loaded(q: Floats, qd: Floats, qdd: Floats) -> Floats:
+    def loaded(tip: str, q: Floats, qd: Floats, qdd: Floats) -> Floats:
         without, parts = other().torques(q, qd, qdd), []
         try:
             for center in (np.zeros(3), *(_REACH * np.eye(3))):
-                other().set_payload(_BODY, 1.0, center)
+                other().set_payload(_BODY, 1.0, center, tip=tip)
                 parts.append(other().torques(q, qd, qdd) - without)
         finally:
             other().remove_payload(_BODY)
@@ -113,8 +125,12 @@ def arm_model(arm: Arm, *, without_gravity: bool = False) -> ArmModel:
     with suppress(SolverError):  # solvers needn't be able to
         model = replace(model, gravity_direction=solver.gravity, pulled=pulled)
     with suppress(SolverError):
-        carried = sum(body["mass"] for body in solver.payloads.values())
-        model = replace(model, loaded=loaded, carried=carried)
+        bodies, tips = solver.payloads.values(), solver.tip_names or ("",)
+        masses = dict.fromkeys(tips, 0.0)
+        for body in bodies:
+            masses[body.get("tip", tips[0])] += body["mass"]
+        carriers = (Carrier(tip, mass, partial(loaded, tip)) for tip, mass in masses.items())
+        model = replace(model, carriers=tuple(carriers))
     with suppress(SolverError, RobotError):
         if description:
             model = _with_description(model, robot, solver, description)
@@ -135,11 +151,10 @@ def _of_description(arm: Arm, own: Solver) -> Solver:
 
 def _with_description(model: ArmModel, robot: Robot, solver: Solver, description: str) -> ArmModel:
     """With limits and, where the solver computes from it, the links of a description."""
+    limits = solver.limits
+    positions = np.array([limits["lower"], limits["upper"]])
+    model = replace(model, position_limits=positions, effort_limits=limits["effort"])
     described = RobotDescription(description)
-    chain = described.chain(solver.joint_names, robot.root)
-    names = ("lower", "upper", "effort")
-    limits = np.array([[joint.limits.get(name, np.inf) for joint in chain] for name in names])
-    model = replace(model, position_limits=limits[:2], effort_limits=limits[2])
     gravity = None if robot.gravity is None else list(robot.gravity)
     engine = FastModel.from_urdf(description, root=robot.root, tip=robot.tip, gravity=gravity)
     held = any(name.startswith(("attached", "locked_joints.")) for name in robot.parameters)
@@ -152,7 +167,14 @@ def _with_description(model: ArmModel, robot: Robot, solver: Solver, description
         return np.concatenate([np.einsum("njkc,kc->knj", columns, p) for p in own])
 
     moved, mass = described.chain(engine.link_joints, robot.root), float(own[1][:, 0].sum())
-    return replace(model, links=links, link_names=tuple(j.child for j in moved), mass=mass)
+    moves = positions_of(described, solver.joint_names)
+    return replace(
+        model,
+        links=links,
+        link_names=tuple(joint.child for joint in moved),
+        link_joints=tuple(moves[joint.name][0] for joint in moved),
+        mass=mass,
+    )
 
 
 def _mass_parts(links: Floats) -> tuple[Floats, Floats]:

@@ -17,7 +17,7 @@ from inverse_dynamics.diagnosis.rival import Mistake, Rival, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
-    from inverse_dynamics.diagnosis.arm import ArmModel
+    from inverse_dynamics.diagnosis.arm import ArmModel, Carrier
     from inverse_dynamics.diagnosis.pieces import View
 
 _LENGTH = (8.0, 12.0)  # m/s^2 of gravity, with masses that are wrong by a fifth
@@ -41,7 +41,7 @@ def rivals(view: View, _: object = None) -> Iterator[Rival]:
         return
     low, high = _FACTORS[0] - 1, _FACTORS[1] - 1
     for k, part in enumerate(arm.links(*view.motion)):
-        words = partial(_mass, view, k % len(view.names))
+        words = partial(_mass, view, k % len(arm.link_names))
         yield view.rival("mass", words, columns=(part,), low=low, high=high)
 
 
@@ -54,10 +54,9 @@ def mounts_and_loads(view: View) -> Iterator[Rival]:
         )
         columns, includes = tuple(arm.pulled(view.motion[0])), ("no_gravity",)
         yield view.rival("gravity", words, columns=columns, includes=includes)
-    parts = view.loaded
-    if parts is not None:
-        low = (-arm.carried, -np.inf, -np.inf, -np.inf)
-        words = partial(_load, parts, arm)
+    for carrier, parts in zip(arm.carriers, view.loaded, strict=True):
+        low = (-carrier.carried, -np.inf, -np.inf, -np.inf)
+        words = partial(_load, parts, arm, carrier)
         yield view.rival("payload", words, columns=tuple(parts), low=low)
 
 
@@ -65,10 +64,11 @@ def rough(view: View) -> Rival:
     """Masses that a maker has estimated: no mistake, and no other cause if they explain as much."""
     if view.arm.links is None:
         return view.rival("rough", own=(view.computed,), own_low=-_ROUGH, own_high=_ROUGH)
-    parts = view.arm.links(*view.motion)[: len(view.names)]
+    count = len(view.arm.link_names)
+    parts = view.arm.links(*view.motion)[:count]
     if view.arm.compared_without_gravity:  # the robot subtracts the gravity of masses of its own
         still = np.zeros_like(view.qd)
-        gravity = view.arm.links(view.motion[0], still, still)[: len(view.names)]
+        gravity = view.arm.links(view.motion[0], still, still)[:count]
         parts = np.concatenate([parts - gravity, gravity])
     return view.rival("rough", columns=tuple(parts), low=-_ROUGH, high=_ROUGH)
 
@@ -119,9 +119,12 @@ def _subtracted(own: Floats, left: Floats, _: Floats) -> Mistake | None:
     )
 
 
-def _load(parts: Floats, arm: ArmModel, body: Floats, _: Floats) -> Mistake | None:
+def _load(
+    parts: Floats, arm: ArmModel, carrier: Carrier, body: Floats, _: Floats
+) -> Mistake | None:
+    tip, carried = carrier.tip or "the tip", carrier.carried
     least, most = (share * arm.mass for share in _MASS)
-    if abs(body[0]) <= least or (arm.mass and body[0] > most) or body[0] < -arm.carried - least:
+    if abs(body[0]) <= least or (arm.mass and body[0] > most) or body[0] < -carried - least:
         return None
     if np.linalg.norm(body[1:]) > _REACH * abs(body[0]):
         return None
@@ -129,23 +132,25 @@ def _load(parts: Floats, arm: ArmModel, body: Floats, _: Floats) -> Mistake | No
     center = np.round(body[1:] / body[0], 3) + 0.0
     rounded = np.array([mass, *(mass * center)])
     load = np.tensordot(rounded, parts, axes=1)
-    beside = float(np.abs(load[:, -1]).max()) > _BESIDE * float(np.abs(load).max())
+    last = float(np.abs(load[:, -1]).max())  # of a tree, which joint is next to the tip isn't known
+    beside = not carrier.tip and last > _BESIDE * float(np.abs(load).max())
     where = ",".join(f"{x:g}" for x in center)
     if mass < 0:
         return Mistake(
             "payload",
             "A payload",
-            f"torques match if the tip carries about {-mass:.2g} kg less, at {where} m, than the {arm.carried:.2g} kg "
+            f"torques match if {tip} carries about {-mass:.2g} kg less, at {where} m, than the {carried:.2g} kg "
             "of the payload that is stated",
             "correct the payload that is stated, or leave it out",
             value=[mass, *map(float, center)],
             shared=rounded,
         )
+    option = f" and --parameter payload.tip={carrier.tip}" if carrier.tip else ""
     return Mistake(
         "tool" if beside else "payload",
         "A tool the description lacks, and the tip" if beside else "A payload",
-        f"torques match if the tip carries about {mass:.2g} kg at {where} m",
-        f"give --payload {mass:g},{where}, or the load's link in the description",
+        f"torques match if {tip} carries about {mass:.2g} kg at {where} m",
+        f"give --payload {mass:g},{where}{option}, or the load's link in the description",
         value=[mass, *map(float, center)],
         shared=rounded,
     )
@@ -155,13 +160,13 @@ def _mass(view: View, link: int, change: Floats, _: Floats) -> Mistake | None:
     factor = printed(1 + change[0], 2)
     if not _LEAST_FACTOR <= max(factor, 1 / factor) <= _MOST_FACTOR:
         return None
-    name = view.arm.link_names[link] if view.arm.link_names else f"of joint {view.names[link]}"
+    name = view.arm.link_names[link]
     return Mistake(
         "mass",
         "A mass of the description is wrong",
         f"torques match if link {name} has {factor:g} times the mass of the description",
         f"correct <mass> of link {name} in the description",
-        (view.names[link],),
+        (view.names[view.arm.link_joints[link]],),
         value=factor,
         shared=np.array([factor - 1]),
     )

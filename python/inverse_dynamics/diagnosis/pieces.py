@@ -113,9 +113,9 @@ class View:
         return None if self.arm.friction is None else self.arm.friction(self.motion[0], self.qd)
 
     @cached_property
-    def loaded(self) -> Floats | None:
-        """(4, N, n) of a body at the tip."""
-        return None if self.arm.loaded is None else self.arm.loaded(*self.motion)
+    def loaded(self) -> tuple[Floats, ...]:
+        """(4, N, n) of a body at each tip."""
+        return tuple(carrier.loaded(*self.motion) for carrier in self.arm.carriers)
 
     @cached_property
     def prismatic(self) -> Mask:

@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import two_arms
 from example_robots import RIGID_BODY
 from simulation_arms import CHAINS, robots_package, urdf_of
 
@@ -596,3 +597,27 @@ def test_too_few_samples_tell_no_meaning():
     found = meaning_of_efforts(None, model_of("ur10"), ())
     assert (found.best, found.sure) == ("torque", False)
     assert "too few valid samples" in found.reason
+
+
+@pytest.mark.parametrize("tip", two_arms.ARMS)
+def test_a_load_of_either_arm_is_named(tip: str, tmp_path: Path) -> None:
+    loaded = Solver(urdf=two_arms.URDF, tip=two_arms.ARMS)
+    loaded.set_payload("load", 2.0, [0.0, 0.0, 0.1], tip=tip)
+    table = two_arms.motion(loaded)
+    table["effort"] += 0.02 * np.random.default_rng(0).standard_normal(table["effort"].shape)
+    found = evaluate(table, urdf=two_arms.written(tmp_path), tip=two_arms.ARMS)
+    (cause,) = found.diagnosis
+    assert cause.kind == "payload"
+    assert f"torques match if {tip} carries about 2 kg at 0,0,0.1 m" in cause.text
+    remedy = {"payload.mass": 2.0, "payload.center_of_mass": [0.0, 0.0, 0.1], "payload.tip": tip}
+    mended = evaluate(table, urdf=tmp_path / "two_arms.urdf", tip=two_arms.ARMS, parameters=remedy)
+    assert max(error.rmse for error in mended.errors) < 0.03
+
+
+def test_a_wrong_mass_of_a_tree_is_named(tmp_path: Path) -> None:
+    heavy = two_arms.URDF.replace("<mass value='2.2'/>", "<mass value='6.6'/>")  # left shoulder
+    table = two_arms.motion(Solver(urdf=heavy, tip="*"))
+    table["effort"] += 0.02 * np.random.default_rng(0).standard_normal(table["effort"].shape)
+    (cause,) = evaluate(table, urdf=two_arms.written(tmp_path), tip="*").diagnosis
+    assert cause.kind == "mass"
+    assert "link left_shoulder has 3 times the mass of the description" in cause.text
