@@ -31,6 +31,8 @@ def yaml_text(payload: Payload) -> str:
         f"center_of_mass: {yaml_list(payload.center_of_mass)}  # m, tip frame, +- "
         + ", ".join(f"{width:.2g}" if math.isfinite(width) else "any" for width in center),
     ]
+    if tips := evaluation.arm.solver.tip_names:
+        lines.append(f"tip: {tips[0]}")
     if found.inertia_is_known:
         widths = upper(found.inertia_half_width)
         lines.append("# ixx ixy ixz iyy iyz izz about center_of_mass [kg m^2]")

@@ -118,9 +118,7 @@ class Payload(ResultFiles, Fit):
         robot = self.evaluation.robot
         if brings_own_model(robot) or robot.model is not None:
             return f"`tip` of the model {robot.plugin if robot.model is None else robot.model.name}"
-        if robot.tip or robot.urdf is None:
-            return f"link {robot.tip}"
-        return f"link {self.evaluation.arm.described.tip(self.joint_names[-1])}"
+        return f"link {self.evaluation.arm.solver.tip}"
 
     @property
     def center_of_mass(self) -> Floats:
@@ -212,7 +210,7 @@ def estimate_payload(
         raise PayloadError(
             f"{evaluation.bag}: no load can be told from masses that are guesses: {evaluation.arm.guess}"
         )
-    _require_own_tip(evaluation.robot, options.get("tip"))
+    _require_own_tip(evaluation.robot, evaluation.robot.tip if options.get("tip") else None)
     _require_plausible(evaluation)
     solver = copy(evaluation.arm.solver)  # one that may carry a load
     arm, told = _arm_of(evaluation.robot)

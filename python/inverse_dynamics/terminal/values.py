@@ -26,7 +26,7 @@ _OWN_OPTIONS = {  # by the solver's parameter that they set
 }
 _PAYLOAD = (
     "MASS, MASS,x,y,z or MASS,x,y,z,Ixx,Ixy,Ixz,Iyy,Iyz,Izz (1, 4 or 10 numbers), or a YAML file with "
-    "mass, center_of_mass, inertia and frame"
+    "mass, center_of_mass, inertia, frame and tip"
 )
 
 
@@ -204,6 +204,8 @@ def _payload_of_file(text: str) -> dict[str, Parameter]:
             add(pose, "frame.xyz", 3)
             add(pose, "frame.rpy", 3)
             pose.reject_others()
+        if (tip := body.optional("tip")) is not None:
+            stated["payload.tip"] = tip.text()
         body.reject_others()
     except UserError as error:
         raise argparse.ArgumentTypeError(str(error)) from None

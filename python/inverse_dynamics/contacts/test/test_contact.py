@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import two_arms
 from command_line import fails
 from example_recordings import write_motion
 from example_robots import KDL
@@ -413,3 +414,19 @@ def test_friction_that_turns_round_is_no_contact(tmp_path):
     found = find_contacts(tmp_path / "turns_round.csv", arm, quiet=(0.0, 0.5))
     assert found.contacts == ()
     assert np.abs(found.torques).max() < 0.05
+
+
+def test_the_wrench_of_a_tree_is_that_of_the_first_tip(tmp_path):
+    push, file = np.array([20.0, 0.0, -10.0, 0.0, 0.0, 0.0]), two_arms.written(tmp_path)
+    for tips in (two_arms.ARMS, two_arms.ARMS[::-1]):
+        tree = Solver(urdf=two_arms.URDF, tip=tips)
+        table = two_arms.motion(tree)
+        pushed = (table["time"] > 10.0) & (table["time"] < 11.0)
+        table["effort"] += 0.05 * np.random.default_rng(0).standard_normal(table["effort"].shape)
+        table["effort"][pushed] += tree.external_torques(table["q"][pushed], push)
+        found = find_contacts(table, quiet=(1.0, 9.0), urdf=file, tip=tips)
+        (contact,) = found.contacts
+        middle = found.wrenches[pushed][100:-20].mean(axis=0)
+        np.testing.assert_allclose(middle[:3], push[:3], atol=3.0)
+        assert 10.0 < contact.begin < 10.1
+        assert any(f"the wrench is that at {tips[0]}" in note for note in found.notes)

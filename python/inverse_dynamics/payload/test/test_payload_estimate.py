@@ -10,12 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import two_arms
 import yaml
 from command_line import fails
 from example_recordings import write_motion
 from simulation_arms import joint, link, robot
 
-from inverse_dynamics import load_robot
+from inverse_dynamics import Solver, evaluate, load_robot
 from inverse_dynamics._core import (
     PayloadEstimator,
     PayloadOptions,
@@ -24,6 +25,7 @@ from inverse_dynamics._core import (
     residual_noise,
 )
 from inverse_dynamics.errors import OutputError
+from inverse_dynamics.payload.files import yaml_text
 from inverse_dynamics.payload.payload import (
     Payload,
     PayloadError,
@@ -465,3 +467,19 @@ def test_the_tip_of_a_model_cant_be_chosen(tmp_path):
         _require_own_tip(load_robot("ur10_real"), "other")
     _require_own_tip(load_robot("ur10_simulated"), "other")
     _require_own_tip(load_robot("ur10_real"), None)
+
+
+@pytest.mark.parametrize("tips", [two_arms.ARMS, two_arms.ARMS[::-1]])
+def test_the_load_of_a_tree_is_that_of_the_first_tip(tips: tuple[str, str], tmp_path: Path) -> None:
+    tree = Solver(urdf=two_arms.URDF, tip=two_arms.ARMS)
+    tree.set_payload("load", 2.0, [0.0, 0.0, 0.1], tip=tips[0])
+    table, urdf = two_arms.motion(tree), two_arms.written(tmp_path)
+    found = estimate_payload(table, urdf=urdf, tip=tips)
+    assert found.estimate.mass == pytest.approx(2.0, rel=1e-4)
+    np.testing.assert_allclose(found.estimate.center_of_mass, [0.0, 0.0, 0.1], atol=1e-4)
+    assert found.frame == f"link {tips[0]}"
+    # its file says which tip carries it, whatever the order of tips is then
+    file = tmp_path / "load.yaml"
+    file.write_text(yaml_text(found))
+    carrying = evaluate(table, urdf=urdf, tip=two_arms.ARMS, parameters=option(f"{file}"))
+    assert max(error.rmse for error in carrying.errors) < 0.05
