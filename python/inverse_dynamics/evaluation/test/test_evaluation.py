@@ -6,10 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import two_arms
 from example_recordings import joint_log, motion, recording
 from example_robots import JOINTS, RIGID_BODY, UR10, URDF
+from pages import data_of
 
-from inverse_dynamics import cli, evaluate, load_robot, read_recording
+from inverse_dynamics import Solver, cli, evaluate, load_robot, read_recording
 from inverse_dynamics.errors import (
     BagError,
     EvaluationError,
@@ -290,3 +292,37 @@ def test_an_evaluation_that_is_stopped_leaves_nothing(bag, robot, tmp_path, shar
     with pytest.raises(KeyboardInterrupt):
         evaluate_into(tmp_path / "result", bag, robot, progress=stop)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_tree_is_evaluated_and_so_is_one_of_its_arms_while_the_other_rests(tmp_path):
+    tree = Solver(urdf=two_arms.URDF, tip=two_arms.ARMS)
+    left = tuple(name for name in tree.joint_names if name.startswith("left"))
+    table, file = two_arms.motion(tree, still=left), two_arms.written(tmp_path)
+    whole = evaluate(table, urdf=file, tip=two_arms.ARMS)
+    assert whole.joint_names == tree.joint_names
+    assert whole.units == tuple("N" if name == "lift_joint" else "N m" for name in tree.joint_names)
+    assert np.abs(whole.computed - whole.measured).max() < 1e-4  # of some hundred
+    of_arm = Solver(urdf=two_arms.URDF, tip="right_tool").joint_names
+    columns = {
+        f"{quantity}.{name}": table[key][:, tree.joint_names.index(name)]
+        for quantity, key in (("position", "q"), ("velocity", "qd"), ("effort", "effort"))
+        for name in of_arm
+    }
+    one = evaluate({"time": table["time"], **columns}, urdf=file, tip="right_tool")
+    assert one.joint_names == of_arm
+    assert np.abs(one.computed - one.measured).max() < 1e-4
+
+
+def test_the_page_of_a_tree_draws_all_of_it(tmp_path, ids):
+    file = two_arms.written(tmp_path)
+    tree = Solver(urdf=two_arms.URDF, tip=two_arms.TIPS)
+    np.savez(tmp_path / "motion.npz", **two_arms.motion(tree, seconds=2.0))
+    code, out, _ = ids(
+        "evaluate", "motion.npz", "--urdf", f"{file}", "--tip", "*", "--out", "result"
+    )
+    assert code == 0, out
+    links = data_of((tmp_path / "result/report.html").read_text())[0]["links"]
+    moving = [
+        (link["joint"], link["factor"], link["offset"]) for link in links if link["joint"] >= 0
+    ]
+    assert sorted(moving) == sorted([*((j, 1.0, 0.0) for j in range(9)), (8, -1.5, 0.1)])

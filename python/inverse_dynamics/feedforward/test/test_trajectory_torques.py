@@ -9,6 +9,7 @@ from shutil import rmtree
 
 import numpy as np
 import pytest
+import two_arms
 from example_recordings import (
     STORE,
     TOPIC,
@@ -480,6 +481,20 @@ def test_what_can_not_be_read_is_not_told_as_what_can_not_be_written(tmp_path, r
         with pytest.raises(BagError, match=f"^{path}: {expected}"):
             write_trajectory_torques(trajectory_torques(path, robot), tmp_path / "filled")
         assert not (tmp_path / "filled").exists()
+
+
+def test_a_plan_of_two_arms_in_any_order_gets_the_torques_of_the_tree(tmp_path):
+    tree = Solver(urdf=two_arms.URDF, tip=two_arms.ARMS)
+    table = two_arms.motion(tree, seconds=2.0)
+    names = tree.joint_names[::-1]
+    columns = {"time": table["time"]}
+    for quantity, key in (("position", "q"), ("velocity", "qd")):
+        for name in names:
+            columns[f"{quantity}.{name}"] = table[key][:, tree.joint_names.index(name)]
+    write_table(tmp_path / "plan.csv", columns)
+    found = trajectory_torques(tmp_path / "plan.csv", tree)
+    assert found.joint_names == tree.joint_names
+    assert np.abs(found.torques[0] - table["effort"])[100:-100].max() < 1e-3
 
 
 WRENCH_TRAJECTORY = "control_msgs/msg/JointWrenchTrajectory"

@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import two_arms
 from example_recordings import trajectory, write_trajectories
 from example_robots import JOINTS
 from pages import browser, child, complaints, time_of, wait_until
@@ -15,6 +16,7 @@ from inverse_dynamics import (
     JointPath,
     MotionLimits,
     RetimeOptions,
+    Solver,
     cli,
     load_robot,
     retime,
@@ -724,3 +726,19 @@ def test_wrong_paths_are_refused():
         retime(WAYPOINTS[:, :5], "ur10_simulated")
     with pytest.raises(UserError, match="two different waypoints"):
         retime(WAYPOINTS[:1], "ur10_simulated")
+
+
+def test_the_speed_of_each_tip_is_limited(tmp_path):
+    tree = Solver(urdf=two_arms.URDF, tip=two_arms.ARMS)
+    still = np.zeros(len(tree.joint_names))
+    for arm, tip in (("left", "left_tool"), ("right", "right_tool")):
+        away = np.where([name.startswith(arm) for name in tree.joint_names], 0.8, 0.0)
+        timed = retime(
+            np.array([still, away]),
+            tree,
+            MotionLimits(acceleration=np.full(8, 50.0), tip_speed=0.2),
+        )
+        speed = np.linalg.norm(
+            tree.jacobian(timed.q, frame=tip)[:, :3] @ timed.qd[..., None], axis=1
+        )
+        assert speed.max() == pytest.approx(0.2, rel=0.01)
