@@ -88,6 +88,18 @@ void requireCount(const Mechanism& mechanism, const char* what, std::size_t expe
   throw ModelError(where(mechanism), what, std::to_string(expected), std::to_string(got), "");
 }
 
+void checkMotorInertia(const Mechanism& mechanism) {
+  const std::vector<double>& all = mechanism.motor_inertia;
+  if (!all.empty())
+    requireCount(mechanism, "motor_inertia", mechanism.coordinates.joints().size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (std::isfinite(all[i]) && all[i] >= 0) continue;
+    throw ModelError(where(mechanism),
+                     "motor_inertia of coordinate " + mechanism.coordinates.joints()[i].name,
+                     "a finite number >= 0", std::to_string(all[i]), "");
+  }
+}
+
 /// Calls `use(branch, joint, link)` of each link in the first branch that moves it.
 template <class Branches, class Use>
 void forEachOwn(Branches& branches, const Use& use) {
@@ -195,6 +207,7 @@ void checkMechanism(const Mechanism& mechanism) {
                        std::to_string(link), "");
     }
   }
+  checkMotorInertia(mechanism);
   checkRank(mechanism);
 }
 

@@ -157,7 +157,12 @@ void checkCoupling(const Model& model) {
 }
 
 void checkBranches(const Model& model) {
-  if (model.branches.empty()) return;
+  if (model.branches.empty()) {
+    if (model.motor_inertia.size() == 0) return;
+    throw ModelError("model " + model.name, "motor_inertia", "none of a chain",
+                     std::to_string(model.motor_inertia.size()) + " numbers",
+                     "state the rotor inertia of its joints");
+  }
   checkMechanism(
       {model.chain, model.branches, {model.motor_inertia.begin(), model.motor_inertia.end()}});
   if (model.row_parameters.empty() && model.gravity_parameters.empty()) return;

@@ -29,6 +29,10 @@ std::string motorsOf(const Mechanism& mechanism) {
 }
 
 void checkMotors(const Mechanism& mechanism, const Motors& motors) {
+  if (mechanism.branches.empty()) {
+    throw ModelError(motorsOf(mechanism), "branches", "at least one", "none",
+                     "make the mechanism with branches_of_chains");
+  }
   const Index n = mechanism.coordinates.jointCount(), m = motors.M.cols();
   const auto count = static_cast<std::size_t>(m);
   const bool named = motors.names.empty() || motors.names.size() == count;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -153,8 +154,13 @@ class Ros2Transmission {
       throw at_.error("<" + std::string(tag) + ">", std::to_string(count),
                       std::to_string(found.size()));
     }
+    std::set<std::string> names;
     for (std::size_t k = 0; k < count; ++k) {
-      at(*found[k]).text("name");
+      const std::string name = at(*found[k]).text("name");
+      if (!names.insert(name).second) {
+        throw at(*found[k]).error("<" + std::string(tag) + "> name", "each once",
+                                  "'" + name + "' twice");
+      }
       const std::string expected = tag + std::to_string(k + 1);
       const char* const role = found[k]->Attribute("role");
       if (count == 1 || (role != nullptr && role == expected)) continue;

@@ -185,6 +185,11 @@ TEST(Mechanism, RefusesCoordinatesThatMoveNothingOfTheirOwn) {
   odd = sound;
   odd.branches[1].link[1] = 7;
   EXPECT_THAT(errorOf(odd), HasSubstr("without a gap"));
+  odd = sound;
+  odd.motor_inertia = {1};
+  EXPECT_THAT(errorOf(odd), HasSubstr("motor_inertia: expected 3, got 1"));
+  odd.motor_inertia = {1, -1, 0};
+  EXPECT_THAT(errorOf(odd), HasSubstr("motor_inertia of coordinate waist"));
 }
 
 Motors motors(const Eigen::MatrixXd& M, const Names& names = {}) { return {M, {}, names, {}}; }
@@ -248,6 +253,7 @@ TEST(Motors, AreRefusedByName) {
   EXPECT_THAT(errorOf(joints, motors(M.topRows(2))), HasSubstr("right_arm, waist, left_arm"));
   EXPECT_THAT(errorOf(joints, motors(M, {"a", "b"})), HasSubstr("2 names"));
   EXPECT_THAT(errorOf(joints, motors(M, {"a", "b", "a"})), HasSubstr("a"));
+  EXPECT_THAT(errorOf(mechanism(torso(), {"camera"}), motors(M)), HasSubstr("branches_of_chains"));
   M(1, 2) = NAN;
   EXPECT_THAT(errorOf(joints, motors(M)), HasSubstr("row of joint waist: expected finite"));
   M.setOnes();
@@ -338,6 +344,9 @@ TEST(Transmissions, AreRefusedWhereTheyAreAskedForOnly) {
   EXPECT_THAT(error(transmission("SimpleTransmission", simple) +
                     transmission("SimpleTransmission", simple)),
               HasSubstr("joint waist: expected one of no other transmission"));
+  EXPECT_THAT(error(transmission("DifferentialTransmission",
+                                 end("joint", 1, "waist", "") + end("joint", 2, "waist", ""))),
+              HasSubstr("<joint> name: expected each once, got 'waist' twice"));
   const std::string pair = transmission("DifferentialTransmission", kPair);
   EXPECT_EQ(error(pair), "");
   const RobotDescription robot = robotFromUrdf(torso(kLimit, control(pair)));

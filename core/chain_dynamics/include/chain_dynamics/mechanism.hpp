@@ -164,8 +164,8 @@ struct Motors {
 /// effort is limited where it moves one joint alone.
 ///
 /// @param mechanism  with branches.
-/// @throws ModelError  M or names of another size, numbers that aren't finite, a motor without a motion of
-///     its own.
+/// @throws ModelError  no branches, M or names of another size, numbers that aren't finite, a motor without a
+///     motion of its own.
 Mechanism withMotors(const Mechanism& mechanism, const Motors& motors);
 
 /// The motors of a description: those of its transmissions [RobotDescription::Transmission], and each other
