@@ -599,9 +599,12 @@ std::vector<std::size_t> movedLeaves(const RobotDescription& robot, const UrdfOp
   for (const Reach& reach : leavesBelow(robot, root)) {
     Joints above = jointsAbove(robot, reach.link);
     above.resize(reach.joints);  // below root
-    const auto moves = [&](std::size_t j) {
+    const auto moves_itself = [&](std::size_t j) {
       return isMovable(robot.joints[j]) &&
              !(options.locked_position && options.locked_position(robot.joints[j].name));
+    };
+    const auto moves = [&](std::size_t j) {
+      return moves_itself(j) && moves_itself(leaderOf(robot, j).joint);
     };
     const auto last = std::find_if(above.begin(), above.end(), moves);
     if (last == above.end()) continue;

@@ -89,6 +89,10 @@ TEST(Mechanism, TakesForAStarTheFarthestLeafThatEachLastJointMoves) {
   EXPECT_TRUE(mechanism(torso(), {"*"}, held).branches.empty());  // a chain: to the right
   EXPECT_THAT(mechanism(torso(), {"*"}, held).coordinates.jointNames(),
               ElementsAre("waist", "right_arm"));
+  // what follows a joint that is held moves no leaf either
+  const std::string both_held = torso(mimic("left_arm", 1, 0));
+  EXPECT_EQ(mechanism(both_held, {"*"}, held).coordinates.jointNames(), Names{"waist"});
+  EXPECT_TRUE(mechanism(both_held, {"*"}, held).branches.empty());
 }
 
 TEST(Mechanism, CountsEachBodyOnce) {
