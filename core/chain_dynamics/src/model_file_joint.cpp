@@ -264,8 +264,8 @@ void readPlaceInTree(LocatedMap& map, JointEntry& entry) {
     if (const auto offset = followed.optional("offset")) entry.offset += offset->number();
     followed.rejectOthers();
   }
-  for (const char* const key :
-       {"limits", "drive_gain", "spring", "friction", "torque_deviation", "seen"}) {
+  for (const char* const key : {"limits", "drive_gain", "spring", "friction", "row",
+                                "gravity_first_moment", "torque_deviation", "seen"}) {
     if (const auto value = map.optional(key)) {
       value->fail("no such key of a joint that mimics another one",
                   "state it of joint " + entry.mimics.front().joint);

@@ -12,6 +12,7 @@
 
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/text.hpp"
+#include "follower.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -146,8 +147,9 @@ Mechanism treeOf(const std::string& name, const std::vector<JointEntry>& entries
       for (const auto& [coordinate, factor] : followed.factors) {
         if (factor == 0) continue;
         S.push_back({static_cast<Index>(link.size()), coordinate, factor});
-        coordinates[static_cast<std::size_t>(coordinate)].rotor_inertia +=
-            factor * factor * entry.joint.rotor_inertia;
+        Joint& leader = coordinates[static_cast<std::size_t>(coordinate)];
+        leader.rotor_inertia += factor * factor * entry.joint.rotor_inertia;
+        addTurns(leader, entry.joint, factor);
       }
       s.push_back(followed.position);
       link.push_back(static_cast<Index>(i));

@@ -219,12 +219,19 @@ std::string treeLines(const Model& model) {
     const std::vector<Joint>& joints = branch->chain.joints();
     const std::string link =
         "    link: " + list(links[static_cast<std::size_t>(branch->link[i])]) + "\n";
-    text += startLines(joints[i]);
-    if (i > 0) text += "    parent: " + quoted(joints[i - 1].name) + "\n";
+    Joint joint = joints[i];
     const auto coordinate = coordinateOf(model, *branch, i);
-    if (coordinate) text += limitsLine(model.chain.joints()[*coordinate].limits);
-    if (!coordinate) text += mimicLine(model, *branch, i);
-    text += rotorLine(joints[i].rotor_inertia);
+    if (coordinate) {  // it may turn less far for those that follow it, and may have a motor
+      joint.type = model.chain.joints()[*coordinate].type;
+      joint.limits = model.chain.joints()[*coordinate].limits;
+      if (model.motor_inertia.size() > 0) {
+        joint.rotor_inertia += model.motor_inertia[static_cast<Eigen::Index>(*coordinate)];
+      }
+    }
+    text += startLines(joint);
+    if (i > 0) text += "    parent: " + quoted(joints[i - 1].name) + "\n";
+    text += coordinate ? limitsLine(joint.limits) : mimicLine(model, *branch, i);
+    text += rotorLine(joint.rotor_inertia);
     text += coordinate ? identifiedLines(model, *coordinate, link) : link + "\n";
   }
   return text;

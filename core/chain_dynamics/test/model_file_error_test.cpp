@@ -72,6 +72,8 @@ TEST(ModelFileError, TreesThatAreNone) {
   EXPECT_THAT(error("- name: right\n", "- name: left\n"), HasSubstr("expected one that no other"));
   EXPECT_THAT(error("multiplier: -1}", "multiplier: -1}\n    limits: {lower: 1}"),
               HasSubstr("limits: expected no such key of a joint that mimics another one"));
+  EXPECT_THAT(error("multiplier: -1}", "multiplier: -1}\n    gravity_first_moment: [0, 0, 1]"),
+              HasSubstr("gravity_first_moment: expected no such key of a joint that mimics"));
   EXPECT_THAT(error("schema: 2", "schema: 1"), HasSubstr("tips: expected no such key in schema 1"));
   EXPECT_THAT(error("tips:\n", "tip: {xyz: [0, 0, 1], rpy: [0, 0, 0]}\ntips:\n"),
               HasSubstr("tip: unknown key"));

@@ -130,6 +130,37 @@ TEST(ModelFileWriter, TreesComeBack) {
   EXPECT_LT((of_read - of_written).norm(), kRounding * (1 + of_written.norm()));
 }
 
+TEST(ModelFileWriter, MotorsThatAreJointsComeBackAsRotors) {
+  const Model described = tree();
+  const Mechanism driven = withMotors({described.chain, described.branches},
+                                      {Eigen::MatrixXd::Identity(3, 3), {}, {}, {0.1, 0.2, 0.3}});
+  const Model read = model(modelFileText(Model(driven)));
+  EXPECT_EQ(read.chain.joints()[2].rotor_inertia, 0.3);
+}
+
+/// A continuous left arm that a right one follows.
+Model twoArms(const std::string& type, const std::string& limit) {
+  return Model(mechanismFromRobot(
+      robotFromUrdf(
+          robot(link("base") + link("left") + link("right") +
+                joint("left_arm", "continuous", "base", "left", "") +
+                joint("right_arm", type, "base", "right", "<mimic joint='left_arm'/>" + limit))),
+      {}, {"*"}));
+}
+
+TEST(ModelFileWriter, JointsThatTurnAsFarAsTheirFollowersComeBack) {
+  const Model written = twoArms("revolute", kLimit);
+  const Joint read = model(modelFileText(written)).chain.joints()[0];
+  EXPECT_EQ(read.type, JointType::kRevolute);
+  EXPECT_EQ(read.limits.upper, written.chain.joints()[0].limits.upper);
+
+  const std::string endless = modelFileText(twoArms("continuous", ""));
+  EXPECT_EQ(model(endless).chain.joints()[0].type, JointType::kContinuous);
+  const std::string unchecked = endless.substr(0, endless.find("checks:"));
+  EXPECT_EQ(model(replaced(unchecked, "multiplier: 1", "multiplier: 0.5")).chain.joints()[0].type,
+            JointType::kRevolute);
+}
+
 TEST(ModelFileWriter, RefusesCoordinatesThatAreNoJoints) {
   Model robot = tree();
   for (Branch& branch : robot.branches) {
