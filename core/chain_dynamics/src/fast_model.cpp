@@ -106,7 +106,7 @@ struct FastModel::Data {
     fillRobot();
   }
 
-  /// Of a mechanism; each branch and the friction made by `made`.
+  /// Of a mechanism, whose branches `made` makes.
   template <class Made>
   Data(const Model& of, const Made& made) : Data(Model(of.chain)) {
     const Model& model = *(robot.model = std::make_unique<const Model>(withBranches(of)));
