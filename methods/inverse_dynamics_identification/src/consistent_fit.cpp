@@ -126,7 +126,8 @@ class Data {
 };
 
 /// Solves H x = b in place. First come the unknowns of the links; the own columns of a joint meet those of
-/// no other one, nor the numbers of links before those that it moves, and are eliminated. False: H isn't positive definite.
+/// no other one, nor the numbers of links before those that it moves, and are eliminated. False: H isn't
+/// positive definite.
 bool solveInPlace(const MatrixXd& H, Index rigid, const std::vector<Index>& before, VectorXd& x) {
   const auto joints = static_cast<Index>(before.size());
   const Index own = (H.rows() - rigid) / joints;

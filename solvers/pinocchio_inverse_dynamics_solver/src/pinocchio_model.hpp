@@ -34,8 +34,8 @@ struct Models {
 /// own.
 Models toPinocchio(const std::vector<chain_dynamics::Branch>& branches);
 
-/// The model of all joints of a robot description, for tests and benchmarks: those that move, parents first, by
-/// their names, whatever they mimic; a frame for each link, by its name. Gravity is zero.
+/// The model of all joints of a robot description, for tests and benchmarks: those that move, parents
+/// first, by their names, whatever they mimic; a frame for each link, by its name. Gravity is zero.
 Model toPinocchio(const chain_dynamics::RobotDescription& robot);
 
 }  // namespace v2

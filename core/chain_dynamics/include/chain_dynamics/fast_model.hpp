@@ -40,12 +40,12 @@ struct Robot;
 /// A model made ready for the fast kernels. Of a mechanism [mechanism.hpp] the tip is that of the first
 /// branch.
 ///
-/// Up to kMaxJoints joints. Real time: no method but the constructor, addToGram(),
-/// torqueDerivativesBatch() and coriolisMatrixBatch() allocates, locks or throws; one state needs up to 48 KiB of stack, many
-/// states up to 112 KiB; of a mechanism or springs 160 KiB, and the regressor of a branch of more than 32 joints
-/// allocates [docs/real_time.md]. Threads: safe. NaN gives NaN in every entry that
-/// depends on it. A vector may be written where one of the inputs stands (tau where q does, of many
-/// states in the same layout); otherwise outputs overlap no input.
+/// Up to kMaxJoints joints. Real time: no method but the constructor, emptyGram(), addToGram(),
+/// torqueDerivativesBatch() and coriolisMatrixBatch() allocates, locks or throws; of a mechanism also
+/// regressorBatch(), and regressor() where a branch has more than 32 joints. One state needs up to 48 KiB
+/// of stack, many states up to 112 KiB; of a mechanism or springs 160 KiB [docs/real_time.md]. Threads:
+/// safe. NaN gives NaN in every entry that depends on it. A vector may be written where one of the inputs
+/// stands (tau where q does, of many states in the same layout); otherwise outputs overlap no input.
 class FastModel {
  public:
   /// Longest chain.

@@ -122,8 +122,8 @@ struct Model {
   bool inertiaIsPhysical() const;
 };
 
-/// Rejects a model whose parts don't fit together [also checkMechanism()]: wrong sizes, non-finite numbers, gains <= 0,
-/// coefficients that a friction law can't have.
+/// Rejects a model whose parts don't fit together [also checkMechanism()]: wrong sizes, non-finite
+/// numbers, gains <= 0, coefficients that a friction law can't have.
 ///
 /// Call it once where a model was made by hand; the functions below only assert sizes.
 ///
@@ -188,8 +188,9 @@ void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstV
 /// Kinetic energy [J]: `T(q, qd) = 1/2 qd' H qd`, rotors included; for models without row parameters.
 double kineticEnergy(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd);
 
-/// Potential energy of gravity and springs [J]: `U(q)`, zero where all mass is at the root frame's origin and
-/// all springs are at rest; its gradient is gravityVector(). For models without row parameters, or with some for gravity.
+/// Potential energy of gravity and springs [J]: `U(q)`, zero where all mass is at the root frame's origin
+/// and all springs are at rest; its gradient is gravityVector(). For models without row parameters, or
+/// with some for gravity.
 double potentialEnergy(const Model& model, const ConstVectorRef& q);
 
 /// Whether friction depends on the gravity torques, and so on q: a law has a load coefficient.

@@ -34,11 +34,10 @@ Model modelFromYaml(const std::string& text, const std::string& where);
 
 /// The text of the file that modelFromYaml() reads as this model, in schema 2 and torques.
 ///
-/// Links are in the frames of model.chain or of its branches, whose z is the joint's axis. Check rows are of states
-/// within `seen`, of any where that isn't known.
+/// Links are in the frames of model.chain or of its branches, whose z is the joint's axis. Check rows are
+/// of states within `seen`, of any where that isn't known.
 /// @throws ModelError  a model that checkModel() refuses, or with what no file states: parameters of
-///     gravity beside rows, or with masses of their own,
-///     a coordinate of branches that is no joint.
+///     gravity beside rows, or with masses of their own, a coordinate of branches that is no joint.
 std::string modelFileText(const Model& model);
 
 }  // namespace v2

@@ -13,11 +13,11 @@
 ///
 /// Read are the links and joints of URDF 1.0 to 1.2 [https://wiki.ros.org/urdf/XML], the rotor
 /// inertia of `<transmission>`, and of `<ros2_control>` the transmissions and the joints with
-/// `mimic="false"`, whose `<mimic>` isn't used. As in urdfdom, `quat_xyzw` counts where the URDF states version 1.1
-/// or later, limits of acceleration, deceleration and jerk from 1.2 on; elsewhere they are ignored,
-/// and a warning says so. Known, and left to others: visual
-/// and collision shapes, materials, sensors, calibration, safety controllers, extensions of
-/// simulators, all else of transmissions, and elements of another XML namespace. Any other element
+/// `mimic="false"`, whose `<mimic>` isn't used. As in urdfdom, `quat_xyzw` counts where the URDF states
+/// version 1.1 or later, limits of acceleration, deceleration and jerk from 1.2 on; elsewhere they are
+/// ignored, and a warning says so. Known, and left to others: visual and collision shapes, materials,
+/// sensors, calibration, safety controllers, extensions of simulators, all else of transmissions, and
+/// elements of another XML namespace. Any other element
 /// or attribute gives a warning, with the name that was probably meant. A Chain is made from this
 /// tree by chainFromRobot() [urdf.hpp].
 

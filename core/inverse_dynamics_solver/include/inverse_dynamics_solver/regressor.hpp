@@ -36,7 +36,8 @@ class Regressor : public Capability {
   void getRegressor(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                     MatrixRef Y) const;
 
-  /// Side by side, n x (10 l N). Into memory whose rows don't stand side by side, it allocates.
+  /// Side by side, n x (10 l N). It allocates of a tree, and into memory whose rows don't
+  /// stand side by side.
   Eigen::MatrixXd getRegressorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                                     const ConstStatesRef& qdd) const {
     Eigen::MatrixXd Y(q.joints, 10 * linksFor("getRegressorBatch") * q.count);

@@ -112,9 +112,9 @@ struct ArmFit {
   int passes = 0;
 };
 
-/// What samples and prior say of the unknowns at a fit: ten parameters of each link, then ownColumns(terms) of each
-/// joint, and one more of log(drive gain) where these were fitted; those of shift, log(width), log(vs)
-/// and log(drive gain) are steps from the fit.
+/// What samples and prior say of the unknowns at a fit: ten parameters of each link, then
+/// ownColumns(terms) of each joint, and one more of log(drive gain) where these were fitted; those of
+/// shift, log(width), log(vs) and log(drive gain) are steps from the fit.
 struct ArmInformation {
   OwnedMatrix data;    ///< unknowns x unknowns: half the second derivatives of the weighted squares
   OwnedMatrix prior;   ///< the same of prior and penalties

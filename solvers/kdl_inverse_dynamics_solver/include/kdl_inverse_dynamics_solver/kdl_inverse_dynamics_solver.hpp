@@ -23,9 +23,9 @@ using inverse_dynamics_solver::VectorRef;
 /// Torques by KDL's recursive Newton-Euler solver, H, C qd and g by its ChainDynParam [Featherstone
 /// 2008, ch. 5 and 6], the tip by ChainFkSolverPos_recursive, ChainJntToJacSolver and
 /// ChainJntToJacDotSolver, accelerations by ChainFdSolver_RNE. Trees are the sums of the chains to their
-/// tips, each by these solvers; their accelerations are solved from H and torques. KDL's solvers keep state: parameters
-/// and promises are those of PooledSolver. (KDL has no Coriolis matrix, energies, derivatives or
-/// regressor.)
+/// tips, each by these solvers; their accelerations are solved from H and torques. KDL's solvers keep
+/// state: parameters and promises are those of PooledSolver. (KDL has no Coriolis matrix, energies,
+/// derivatives or regressor.)
 class InverseDynamicsSolverKDL : public inverse_dynamics_solver::PooledSolver,
                                  public inverse_dynamics_solver::PooledTip,
                                  public inverse_dynamics_solver::ForwardDynamics {

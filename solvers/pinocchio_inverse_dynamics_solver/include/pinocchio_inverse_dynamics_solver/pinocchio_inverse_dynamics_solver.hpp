@@ -29,9 +29,9 @@ using inverse_dynamics_solver::VectorRef;
 /// Torques by Pinocchio's `rnea`, H by its `crba`, C qd and g by `nonLinearEffects` and
 /// `computeGeneralizedGravity` [Featherstone 2008, ch. 5 and 6]; the tip by its frames, derivatives
 /// by `computeRNEADerivatives`, the Coriolis matrix as half of that by velocity, the rest by
-/// `computeJointTorqueRegressor`, `aba` and its energies. A tree is Pinocchio's, with torques, matrices and
-/// Jacobians seen from its coordinates; its accelerations are solved from H and torques. Pinocchio writes to memory of its own:
-/// parameters and promises are those of PooledSolver.
+/// `computeJointTorqueRegressor`, `aba` and its energies. A tree is Pinocchio's, with torques, matrices
+/// and Jacobians seen from its coordinates; its accelerations are solved from H and torques. Pinocchio
+/// writes to memory of its own: parameters and promises are those of PooledSolver.
 class InverseDynamicsSolverPinocchio : public inverse_dynamics_solver::PooledSolver,
                                        public inverse_dynamics_solver::PooledTip,
                                        public inverse_dynamics_solver::CoriolisMatrix,

@@ -100,9 +100,9 @@ class RigidBodyTip : public inverse_dynamics_solver::Kinematics,
 /// A model file takes precedence over a robot description, which a node often carries for other
 /// programs. It states geometry, inertia, gravity, friction and drive gains itself; then `gravity`
 /// replaces the file's only where it is given, and each of `springs` the file's of its joint. `root`,
-/// `tip`, `attached`, `locked_joints`, `allow_massless`, `urdf_friction`, `rotor_inertia` and `motors` have no
-/// meaning, and bodies that the description attaches to the model's joints aren't included: warnings() lists what was given in
-/// vain.
+/// `tip`, `attached`, `locked_joints`, `allow_massless`, `urdf_friction`, `rotor_inertia` and `motors`
+/// have no meaning, and bodies that the description attaches to the model's joints aren't included:
+/// warnings() lists what was given in vain.
 ///
 /// Without a model file, friction is that of the description where `urdf_friction` is true, else
 /// zero.
