@@ -145,8 +145,10 @@ std::string Setup::tip() const {
   if (!tips.empty()) return tips.front();
   rclcpp::Parameter tip;
   if (!node->get_parameter("ids.tip", tip)) return "";
-  return tip.get_type() == rclcpp::PARAMETER_STRING_ARRAY ? joined(tip.as_string_array())
-                                                          : tip.value_to_string();
+  const std::string text = tip.get_type() == rclcpp::PARAMETER_STRING_ARRAY
+                               ? joined(tip.as_string_array())
+                               : tip.value_to_string();
+  return text == "*" ? "" : text;  // of a chain it names no link
 }
 
 ArmSource::ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node, Use use)

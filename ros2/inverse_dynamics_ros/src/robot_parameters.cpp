@@ -162,6 +162,7 @@ std::string NodeRobot::tipLink(const std::string& description,
                                const std::vector<std::string>& tips) const {
   if (!tips.empty()) return tips.front();
   std::string stated = statedLink("tip");
+  if (stated == "*") stated.clear();  // of a chain, whose only leaf is meant
   const auto robot = stated.empty() ? described(description) : std::nullopt;
   if (!robot) return stated;
   const std::size_t root = robot->linkIndex(rootLink(description));

@@ -107,6 +107,8 @@ TEST_F(RobotParameters, NameTheEndsOfTheChain) {
   const NodeRobot listed(
       Parameters{{"robot", file()}, {"ids.tip", std::vector<std::string>{"hand"}}});
   EXPECT_EQ(listed.tipLink(robot.description()), "hand");
+  const NodeRobot starred(Parameters{{"robot", file()}, {"ids.tip", std::string("*")}});
+  EXPECT_EQ(starred.tipLink(robot.description()), "cart");
   const NodeRobot of_a_model(Parameters{{"plugin_name", std::string("package/Class")}});
   EXPECT_EQ(of_a_model.rootLink(""), "");
   EXPECT_EQ(of_a_model.tipLink("<robot"), "");
