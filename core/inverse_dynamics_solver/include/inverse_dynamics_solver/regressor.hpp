@@ -24,9 +24,9 @@ class Regressor : public Capability {
   Eigen::Index linkCount() const { return linksFor("linkCount"); }
 
   /// `Y`, n x 10 l, with `tau = Y p` for any parameters p: ten columns per link, in the order of
-  /// their joints, for `[m, mcx, mcy,
-  /// mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz]`, I about the origin of the link's frame
-  /// [chain_dynamics/regressor.hpp]. Rotor inertia isn't among them: it adds `rotor_inertia qdd`.
+  /// their joints, for `[m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz]`, I about the origin of the
+  /// link's frame [chain_dynamics/regressor.hpp]. Rotor inertia isn't among them: it adds
+  /// `rotor_inertia qdd`, and where motors share joints with rotors also products of these motors.
   Eigen::MatrixXd getRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
                                const ConstVectorRef& qdd) const {
     Eigen::MatrixXd Y(jointsFor("getRegressor"), 10 * linksFor("getRegressor"));
