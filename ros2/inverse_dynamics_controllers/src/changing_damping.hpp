@@ -20,7 +20,7 @@ struct Damping {
 /// The damping of the parameters.
 ///
 /// Throws inverse_dynamics_solver::InvalidParameterValueException: wrong size or value, also those of
-/// a change, which is refused then. ParameterUninitializedException: no period where one is needed.
+/// a change, which is refused then.
 ChangingGains<Damping> changingDamping(const Setup& setup);
 
 }  // namespace inverse_dynamics_controllers

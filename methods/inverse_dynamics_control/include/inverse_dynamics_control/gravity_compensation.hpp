@@ -18,7 +18,7 @@
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
-/// `tau = g(q) - D qd + f`, D the damping of LawOptions; needs no physical H.
+/// `tau = g(q) - D qd + f`, D the damping of LawOptions; needs no physical H without damping_rate.
 class GravityCompensation : public ControlLaw {
  public:
   /// Throws inverse_dynamics_solver::InvalidParameterValueException: options of the wrong size or
