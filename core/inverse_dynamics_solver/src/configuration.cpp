@@ -334,20 +334,21 @@ void setSprings(const Configuration& configuration, chain_dynamics::Model& model
     try {
       checkModel(model);
     } catch (const chain_dynamics::ModelError& e) {
-      throw InvalidParameterValueException("parameter '" + configuration.fullName(spring) +
-                                           "stiffness': " + e.what());
+      throw InvalidParameterValueException("parameters '" + configuration.fullName(spring) +
+                                           "*': " + e.what());
     }
   }
 }
 
 void refuseMotorsAndSprings(const Configuration& configuration) {
+  const auto refuse = [&configuration](const std::string& name, const char* what) {
+    configuration.refuse(name, std::string("none, as the solver takes no ") + what, "one",
+                         "take rigid_body_inverse_dynamics_solver");
+  };
+  if (MotorParameters(configuration).given()) refuse("motors", "motors");
+  const std::string prefix = configuration.fullName("springs.");
   for (const std::string& name : configuration.parameters.names()) {
-    const bool is_motors = name == configuration.fullName("motors");
-    if (!is_motors && name.rfind(configuration.fullName("springs."), 0) != 0) continue;
-    throw InvalidParameterValueException("parameter '" + name + "'", "wrong value",
-                                         "none, as the solver takes no " +
-                                             std::string(is_motors ? "motors" : "springs"),
-                                         "one", "take rigid_body_inverse_dynamics_solver");
+    if (name.rfind(prefix, 0) == 0) refuse("springs." + name.substr(prefix.size()), "springs");
   }
 }
 

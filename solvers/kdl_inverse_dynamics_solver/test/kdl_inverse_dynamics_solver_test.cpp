@@ -9,6 +9,7 @@
 #include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/parameters.hpp>
 #include <inverse_dynamics_solver/pooled_solver.hpp>
+#include <map>
 #include <random>
 #include <string>
 #include <thread>
@@ -23,6 +24,7 @@
 namespace kdl_inverse_dynamics_solver::kdl_inverse_dynamics_solver_test {
 
 using inverse_dynamics_solver::Parameters;
+using inverse_dynamics_solver::ParameterValue;
 using inverse_dynamics_solver::conformance::errorOf;
 using inverse_dynamics_solver::conformance::twoArms;
 
@@ -120,14 +122,18 @@ TEST(InverseDynamicsSolverKDL, CalculatesRightWithMoreThreadsThanWorkspaces) {
 }
 
 TEST(InverseDynamicsSolverKDL, RefusesMotorsAndSpringsByName) {
-  for (const std::string name : {"ids.motors", "ids.springs.spin.stiffness"}) {
+  const std::map<std::string, ParameterValue> refused = {
+      {"ids.motors", std::vector<double>(25, 1.0)}, {"ids.springs.spin.stiffness", 1.0}};
+  for (const auto& [name, value] : refused) {
     InverseDynamicsSolverKDL solver;
-    const Parameters parameters = {{"ids.tip", "tool"}, {name, 1.0}};
+    const Parameters parameters = {{"ids.tip", "tool"}, {name, value}};
     const std::string error = errorOf<inverse_dynamics_solver::InvalidParameterValueException>(
         [&] { solver.initialize(parameters, "ids", obliqueArm()); });
     EXPECT_NE(error.find("'" + name + "'"), std::string::npos) << error;
     EXPECT_NE(error.find("rigid_body_inverse_dynamics_solver"), std::string::npos) << error;
   }
+  const Parameters none = {{"ids.tip", "tool"}, {"ids.motors", ""}};  // what a node may declare
+  EXPECT_NO_THROW(InverseDynamicsSolverKDL().initialize(none, "ids", obliqueArm()));
 }
 
 }  // namespace kdl_inverse_dynamics_solver::kdl_inverse_dynamics_solver_test

@@ -162,7 +162,7 @@ chain_dynamics::Mechanism mechanismFromDescription(const Configuration& configur
 /// Throws InvalidParameterValueException: a spring without stiffness, or of a joint that can't have one.
 void setSprings(const Configuration& configuration, chain_dynamics::Model& model);
 
-/// Throws InvalidParameterValueException where `motors` or `springs` are stated: for solvers of chains.
+/// Throws InvalidParameterValueException where `motors` or `springs` are stated: for solvers that take none.
 void refuseMotorsAndSprings(const Configuration& configuration);
 
 /// Friction that a robot description states.
