@@ -365,7 +365,7 @@ class Pair {
   VectorXd q, qd, qdd;
 
  private:
-  /// Pinocchio's tree as its solver makes it, from the branches.
+  /// Pinocchio's tree as its solver makes it, from the branches: without springs and inertia of motors.
   void compareSolver(const MatrixXd& Y) {
     using pinocchio_inverse_dynamics_solver::Models, pinocchio_inverse_dynamics_solver::toPinocchio;
     pinocchio_inverse_dynamics_solver::PinocchioWorkspace solver(
@@ -374,15 +374,18 @@ class Pair {
     MatrixXd H(n(), n()), H_(n(), n()), C(n(), n()), C_(n(), n()), dq(n(), n()), Y_(Y);
     torques(model, q, qd, qdd, ours);
     solver.torques(q, qd, qdd, theirs);
+    theirs += stiffness.cwiseProduct(q - rest) + rotor.cwiseProduct(qdd);
     expectEqual(theirs, ours, "solver's torques");
     inertiaMatrix(model, q, H);
     solver.inertiaMatrix(q, H_);
+    H_.diagonal() += rotor;
     expectEqual(H_, H, "solver's H");
     coriolisMatrix(model, q, qd, C);
     solver.coriolisMatrix(q, qd, C_);
     expectEqual(C_, C, "solver's C");
     torqueDerivatives(model, q, qd, qdd, H, C, dq);
     solver.torqueDerivatives(q, qd, qdd, dq, C_, H_);
+    dq.diagonal() += stiffness;
     expectEqual(dq, H, "solver's dtau/dq");
     expectEqual(C_, C, "solver's dtau/dqd");
     solver.regressor(q, qd, qdd, Y_);
