@@ -88,6 +88,7 @@ class Tree {
     const auto found = places_.find(name);
     if (found != places_.end()) return found->second;
     std::vector<std::string> known;
+    known.reserve(places_.size());
     for (const auto& [joint, place] : places_) known.push_back(joint);
     const std::string nearest = nearestName(name, known);
     throw ModelError(
