@@ -35,8 +35,9 @@ void PinocchioWorkspace::coriolisMatrix(const ConstVectorRef& q, const ConstVect
 
 void PinocchioWorkspace::regressor(const ConstVectorRef& q, const ConstVectorRef& qd,
                                    const ConstVectorRef& qdd, MatrixRef Y) {
-  const auto& of_joints = pinocchio::computeJointTorqueRegressor(
-      model(), data_, positions(q), motion(qd, qd_), motion(qdd, qdd_));
+  pinocchio::computeJointTorqueRegressor(model(), data_, positions(q), motion(qd, qd_),
+                                         motion(qdd, qdd_));
+  const auto& of_joints = data_.jointTorqueRegressor;
   if (isChain()) {
     Y = of_joints;
   } else {

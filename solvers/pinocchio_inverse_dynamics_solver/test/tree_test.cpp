@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
 #include <chain_dynamics/friction.hpp>
 #include <chain_dynamics/friction_laws/smooth_coulomb.hpp>
