@@ -42,10 +42,8 @@ GRAVITY: Gravity = (0.0, 0.0, -9.81)
 MOUNTS = {"floor": (0.0, 0.0, -9.81), "wall": (-9.81, 0.0, 0.0), "ceiling": (0.0, 0.0, 9.81)}
 """Gravity in the frame of the root link: its z axis points up, away from the wall (x up), or down."""
 
-_STIFF = (
-    0.002,
-    1.0,
-)  # s, ratio: time constant and damping of the springs that hold joints which mimic others
+# Time constant [s] and damping ratio of the springs that hold joints which mimic others.
+_STIFF = (0.002, 1.0)
 
 _NEAR = 1e-7  # rad/s; slopes between closer velocities are rounding
 

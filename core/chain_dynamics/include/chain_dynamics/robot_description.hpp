@@ -17,9 +17,9 @@
 /// version 1.1 or later, limits of acceleration, deceleration and jerk from 1.2 on; elsewhere they are
 /// ignored, and a warning says so. Known, and left to others: visual and collision shapes, materials,
 /// sensors, calibration, safety controllers, extensions of simulators, all else of transmissions, and
-/// elements of another XML namespace. Any other element
-/// or attribute gives a warning, with the name that was probably meant. A Chain is made from this
-/// tree by chainFromRobot() [urdf.hpp].
+/// elements of another XML namespace. Any other element or attribute gives a warning, with the name that
+/// was probably meant. A Chain is made from this tree by chainFromRobot() [urdf.hpp], a tree by
+/// mechanismFromRobot() [mechanism.hpp].
 
 #pragma once
 
