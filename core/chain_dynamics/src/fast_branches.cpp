@@ -192,13 +192,23 @@ void inertia(const Robot& robot, int /*structure*/, const double* q, Matrices H)
   addToDiagonal(branchesOf(robot).model->motor_inertia, H);
 }
 
-void components(const Robot& robot, int structure, const double* q, const double* qd, Matrices H,
-                double* c, double* g) {
-  Numbers of_gravity;  // c may stand where an input does
-  inertia(robot, structure, q, H);
-  gravity(robot, structure, q, of_gravity.numbers);
-  coriolis(robot, structure, q, qd, c);
-  std::copy_n(of_gravity.numbers, robot.joints, g);
+void components(const Robot& robot, int /*structure*/, const double* q, const double* qd,
+                Matrices H, double* c, double* g) {
+  const FastBranches& all = branchesOf(robot);
+  Numbers q_b, qd_b, c_b, g_b, sum_c{}, sum_g{};  // c and g may stand where inputs do
+  double H_b[kMost * kMost];
+  setZero(H, robot.joints, robot.joints);
+  addSprings(all, q, sum_g.numbers);
+  for (const FastBranch& b : all.branches) {
+    b.fast->dynamicComponents(positionsOf(b, q, q_b), motionOf(b, qd, qd_b), H_b, jointsOf(b),
+                              c_b.numbers, g_b.numbers);
+    addMatrix(b, H_b, H);
+    add(b, c_b.numbers, sum_c.numbers);
+    add(b, g_b.numbers, sum_g.numbers);
+  }
+  addToDiagonal(all.model->motor_inertia, H);
+  std::copy_n(sum_c.numbers, robot.joints, c);
+  std::copy_n(sum_g.numbers, robot.joints, g);
 }
 
 /// x = H^-1 x for symmetric H, whose lower triangle is overwritten: H = L' D L from the last row to the
