@@ -29,6 +29,7 @@ std::vector<Layout> LAYOUTS() {
   return {LAYOUT(chain_dynamics::Chain),
           LAYOUT(chain_dynamics::FastModel),
           LAYOUT(chain_dynamics::FrictionLaw),
+          LAYOUT(chain_dynamics::FrictionState),
           LAYOUT(chain_dynamics::SeenRange),
           LAYOUT(chain_dynamics::Joint),
           LAYOUT(chain_dynamics::LinkParameters),

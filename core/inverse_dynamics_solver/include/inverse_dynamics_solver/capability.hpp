@@ -18,6 +18,7 @@
 /// | payload.hpp             | Payload            | bodies at the tip that come and go             |
 /// | variable_gravity.hpp    | VariableGravity    | gravity and an accelerating base               |
 /// | load_friction.hpp       | LoadFriction       | whether friction depends on the position       |
+/// | friction_memory.hpp     | FrictionMemory     | friction after the motion so far               |
 /// | motor_currents.hpp      | MotorCurrents      | currents of the motors                         |
 /// | torque_deviation.hpp    | TorqueDeviation    | how far measured torques are from the model's  |
 #pragma once

@@ -25,6 +25,7 @@
 #include "inverse_dynamics_solver/energies.hpp"
 #include "inverse_dynamics_solver/external_wrench.hpp"
 #include "inverse_dynamics_solver/forward_dynamics.hpp"
+#include "inverse_dynamics_solver/friction_memory.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/load_friction.hpp"
@@ -124,6 +125,7 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
                                        public inverse_dynamics_solver::Regressor,
                                        public inverse_dynamics_solver::ForwardDynamics,
                                        public inverse_dynamics_solver::LoadFriction,
+                                       public inverse_dynamics_solver::FrictionMemory,
                                        public inverse_dynamics_solver::TorqueDeviation {
  public:
   using ExternalWrench::getTorques;
@@ -284,6 +286,9 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
   bool hasEnergiesImpl() const override { return model().row_parameters.empty(); }
   bool frictionDependsOnPositionImpl() const override {
     return chain_dynamics::frictionDependsOnLoad(model());
+  }
+  chain_dynamics::FrictionState frictionStateImpl() const override {
+    return chain_dynamics::FrictionState(model());
   }
   Deviations torqueDeviation() const override {
     return {model().torque_deviation.data(), model().torque_deviation.size()};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Smooth Coulomb friction that may grow with load and near rest:
-/// `f = fv qd + fo + (fc + fl |g(q)| + fs exp(-(qd / vs)^2)) tanh((qd + shift) / width)`.
+/// Smooth Coulomb friction that may grow with load and near rest, and may preslide:
+/// `f = fv qd + fo + (fc + fm + fl |g(q)| + fs exp(-(qd / vs)^2)) tanh((qd + shift) / width)`.
 
 #pragma once
 
@@ -13,7 +13,10 @@
 namespace chain_dynamics {
 inline namespace v2 {
 
-/// `f = fv qd + fo + (fc + fl |g(q)| + fs exp(-(qd / vs)^2)) tanh((qd + shift) / width)`.
+/// `f = fv qd + fo + (fc + fm + fl |g(q)| + fs exp(-(qd / vs)^2)) tanh((qd + shift) / width)`.
+///
+/// This is the limit without memory. With a distance, the parts fm and fs lag behind a reversal, over
+/// the distance that a gear yields [friction_state.hpp].
 ///
 /// g(q) is the gravity torque of the joint, of the robot as it is: with its payload, under its
 /// gravity; an external wrench doesn't count. Gears rub more where they carry more; near rest, the
@@ -29,11 +32,13 @@ struct SmoothCoulomb {
   double fl = 0;     ///< load coefficient [1], >= 0: friction per gravity torque
   double fs = 0;     ///< what friction is greater by at rest (Stribeck) [N m] (prismatic: N), >= 0
   double vs = 0;     ///< velocity at which 1/e of fs is left [rad/s], > 0; without fs not used
+  double fm = 0;     ///< presliding friction [N m] (prismatic: N), >= 0
+  double distance = 0;  ///< that it takes to turn round [rad] (prismatic: m); 0: none, and no fm
 
   static constexpr const char* kName = "smooth_coulomb";
   static constexpr int kSchema = 2;
 
-  static constexpr std::array<Coefficient<SmoothCoulomb>, 8> coefficients() {
+  static constexpr std::array<Coefficient<SmoothCoulomb>, 10> coefficients() {
     constexpr auto kNotNegative = CoefficientRange::kNotNegative;
     constexpr auto kPositive = CoefficientRange::kPositive;
     return {{{"fv", &SmoothCoulomb::fv, true, kNotNegative},
@@ -43,14 +48,16 @@ struct SmoothCoulomb {
              {"fo", &SmoothCoulomb::fo, true, CoefficientRange::kAny, false},
              {"fl", &SmoothCoulomb::fl, false, kNotNegative, false},
              {"fs", &SmoothCoulomb::fs, true, kNotNegative, false},
-             {"vs", &SmoothCoulomb::vs, false, kPositive, false, "fs"}}};
+             {"vs", &SmoothCoulomb::vs, false, kPositive, false, "fs"},
+             {"fm", &SmoothCoulomb::fm, true, kNotNegative, false},
+             {"distance", &SmoothCoulomb::distance, false, kPositive, false, "fm"}}};
   }
 
   FrictionForm form() const {
     FrictionForm form;  // tanh(x) = 2 sigmoid(2 x) - 1
     form.fv = fv;
     form.fo = fo;
-    form.A = 2 * fc;
+    form.A = 2 * (fc + fm);
     form.alpha = 2 / width;
     form.shift = shift;
     form.center = 0.5;

@@ -24,6 +24,7 @@
 #include "inverse_dynamics_solver/conformance/batch_tests.hpp"
 #include "inverse_dynamics_solver/conformance/capabilities.hpp"
 #include "inverse_dynamics_solver/conformance/law_tests.hpp"
+#include "inverse_dynamics_solver/friction_memory.hpp"
 #include "inverse_dynamics_solver/torque_deviation.hpp"
 
 namespace inverse_dynamics_solver::conformance {
@@ -350,6 +351,25 @@ TEST_P(SolverConformance, TorqueDerivativesIncludeFriction) {
       }
     }
   }
+}
+
+TEST_P(SolverConformance, FrictionRemembersWithinItsBand) {
+  INVERSE_DYNAMICS_SOLVER_REQUIRE(FrictionMemory, memory);
+  chain_dynamics::FrictionState state = memory->frictionState();
+  const Eigen::Index n = solver_->jointCount();
+  Eigen::VectorXd most = Eigen::VectorXd::Zero(n), f(n);
+  state.addUnknown(most);
+  EXPECT_EQ(state.remembers(), !most.isZero(0));
+  for (const State& x : randomStates(kStates)) {
+    f.setZero();
+    state.move(x.q);
+    state.addTo(x.qd, f);
+    EXPECT_TRUE((f.array().abs() <= 2 * most.array()).all()) << f.transpose();
+  }
+  EXPECT_FALSE(frictionState(*makeInitialized({{"friction", false}})).remembers());
+  const auto fresh = make();
+  const auto& uninitialized = dynamic_cast<const FrictionMemory&>(*fresh);
+  errorOf<UninitializedException>([&] { uninitialized.frictionState(); });
 }
 
 TEST_P(SolverConformance, TorqueDeviationIsOneOfEachJointOrUnknown) {

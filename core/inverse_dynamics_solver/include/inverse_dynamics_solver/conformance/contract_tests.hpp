@@ -20,6 +20,7 @@
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 #include "inverse_dynamics_solver/conformance/capabilities.hpp"
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
+#include "inverse_dynamics_solver/friction_memory.hpp"
 #include "inverse_dynamics_solver/motor_currents.hpp"
 #include "inverse_dynamics_solver/torque_deviation.hpp"
 
@@ -155,6 +156,13 @@ TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerDoNotAllocate) {
   if (band != nullptr && band->hasTorqueDeviation()) {
     EXPECT_EQ(allocations([&] { band->getTorqueDeviation(tau); }), 0);
   }
+  chain_dynamics::FrictionState friction = frictionState(s);
+  EXPECT_EQ(allocations([&] {
+              friction.reset();
+              friction.move(x.q);
+              friction.addTo(x.qd, tau);
+            }),
+            0);
 }
 
 TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {

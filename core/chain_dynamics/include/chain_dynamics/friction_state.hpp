@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Friction that remembers where the robot has come from.
+///
+///     FrictionState state(model);                  // knows nothing of the motion so far
+///     state.move(q);                               // at every sample, in the order of time
+///     frictionVector(model, q, qd, f);             // the limit without memory
+///     state.addTo(qd, f);                          // friction after the motion so far
+///
+/// A gear yields before it slips: after a reversal, friction turns round over a distance d instead of
+/// at once, and a joint that stands still keeps the friction of the motion before. Dahl's law says so
+/// with one number z per joint, the part of the presliding friction fm that acts, as it changes with
+/// the joint's path s [Dahl 1968, A solid friction model, Aerospace Corporation TOR-0158(3107-18)-1]:
+///
+///     dz = (sign(ds) - z) |ds| / d,      z in [-1, 1],      p = fm + fs exp(-(qd / vs)^2).
+///
+/// z depends on the path alone, not on time: it doesn't change while a joint stands still. The limit
+/// without memory [friction_laws/smooth_coulomb.hpp] has tanh((qd + shift) / width) instead of z. Where
+/// z isn't known, at the beginning, the part u of it that isn't takes that value: u falls from 1 as
+/// exp(-path / d), and `(fm + fs) u` bounds the error.
+///
+/// Real time: all functions but constructors: no allocation, lock, exception or system call.
+/// Threads: each has its own state.
+
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <vector>
+
+#include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/friction.hpp"
+#include "chain_dynamics/owned.hpp"
+#include "chain_dynamics/states.hpp"
+
+namespace chain_dynamics {
+inline namespace v2 {
+
+struct Model;
+
+/// Dahl's law of one joint.
+///
+/// @tparam Number  double or a dual number.
+template <typename Number>
+struct Presliding {
+  Number z = Number(0);        ///< part of the presliding friction that is known to act, in [-1, 1]
+  Number unknown = Number(1);  ///< part that isn't known, in [0, 1]
+
+  /// Goes on by `by` [rad; prismatic m]: exact for a step of any length in one direction.
+  ///
+  /// @param distance  d > 0; rad (prismatic m).
+  void move(double by, const Number& distance) {
+    using std::exp;
+    if (!(by != 0)) return;
+    const double sign = by > 0 ? 1 : -1;
+    const Number left = exp(-std::abs(by) / distance);
+    z = sign + (z - sign) * left;
+    unknown = unknown * left;
+  }
+};
+
+/// What the friction of a robot remembers.
+class FrictionState {
+ public:
+  /// Of a robot whose friction remembers nothing.
+  FrictionState() = default;
+
+  /// Of a robot whose motion so far isn't known.
+  explicit FrictionState(const Model& model);
+
+  /// Whether any law has a distance; where none has, the functions below do nothing.
+  bool remembers() const noexcept { return !laws_.empty(); }
+
+  /// Forgets the motion so far.
+  void reset() noexcept;
+
+  /// Goes on to the position q (n; rad, prismatic m); the first time after reset(), starts there. Of
+  /// continuous joints whole turns don't count. A position that isn't finite is left out.
+  void move(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept;
+
+  /// Adds what the motion so far changes: `C' p (z + (u - 1) tanh((v + shift) / width))`.
+  ///
+  /// @param qd         n; rad/s (prismatic m/s): v = C qd, C = Model::coupling or 1.
+  /// @param[in,out] f  n; frictionVector(), or torques that contain it; N m (prismatic N).
+  void addTo(const Eigen::Ref<const Eigen::VectorXd>& qd,
+             Eigen::Ref<Eigen::VectorXd> f) const noexcept;
+
+  /// move() along N positions in the order of time.
+  void moveAlong(const ConstStates& q) noexcept;
+
+  /// move() and addTo() of N states in the order of time.
+  void addAlong(const ConstStates& q, const ConstStates& qd, const States& f) noexcept;
+
+  /// Adds half the width of what isn't known: `|C|' (fm + fs) u`.
+  ///
+  /// @param[in,out] half_width  n; N m (prismatic N).
+  void addUnknown(Eigen::Ref<Eigen::VectorXd> half_width) const noexcept;
+
+ private:
+  struct Remembered {
+    SmoothCoulomb law;  // distance 0: remembers nothing
+    Presliding<double> memory;
+  };
+
+  template <class At>
+  void advance(const At& q) noexcept;
+  template <class At, class Add>
+  void add(const At& qd, const Add& add) const noexcept;
+  double coefficient(std::size_t law, Eigen::Index joint) const noexcept;
+
+  std::vector<Remembered> laws_;
+  OwnedMatrix coupling_;  // empty: law j is that of joint j
+  std::vector<JointType> types_;
+  std::vector<double> last_;  // positions; NaN: none yet
+};
+
+}  // namespace v2
+}  // namespace chain_dynamics
