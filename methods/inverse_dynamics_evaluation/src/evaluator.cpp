@@ -3,8 +3,10 @@
 #include "inverse_dynamics_evaluation/evaluator.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/friction_state.hpp>
 #include <cmath>
 #include <cstddef>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <string>
@@ -132,10 +134,12 @@ Evaluation readMotion(JointStateSource& source, const RecordingOptions& recordin
 void computeTorques(Evaluation& motion, const InverseDynamicsSolver& solver,
                     const EvaluationOptions& options) {
   SampleTable& table = *motion.table;
+  chain_dynamics::FrictionState friction = inverse_dynamics_solver::frictionState(solver);
   forEachBlock(table.size(), options, kAccelerated, kComputed, [&](Index first, Index count) {
+    const auto q = table.q.middleCols(first, count), qd = table.qd.middleCols(first, count);
     auto computed = table.computed.middleCols(first, count);
-    solver.getTorquesBatch(table.q.middleCols(first, count), table.qd.middleCols(first, count),
-                           table.qdd.middleCols(first, count), computed);
+    solver.getTorquesBatch(q, qd, table.qdd.middleCols(first, count), computed);
+    friction.addAlong(q, qd, computed);
     requirePossibleTorques(options.recording, solver.jointNames(), options.units, computed, first);
   });
 }
