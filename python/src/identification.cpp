@@ -38,6 +38,7 @@ using Block = std::tuple<Array, Array, Array, Array>;
 /// Blocks, and the arrays that they are views of.
 struct HeldData {
   std::vector<Block> arrays;
+  std::vector<Array> before;
   inverse_dynamics_identification::ArmData data;
 };
 
@@ -49,7 +50,7 @@ namespace pybind11::detail {
 template <>
 class type_caster<inverse_dynamics_identification::FrictionTerms> {
   using Terms = inverse_dynamics_identification::FrictionTerms;
-  static constexpr std::array<const char*, 3> kLaws = {"step", "load", "stribeck"};
+  static constexpr std::array<const char*, 4> kLaws = {"step", "load", "stribeck", "memory"};
 
  public:
   PYBIND11_TYPE_CASTER(Terms, const_name("str"));
@@ -59,7 +60,7 @@ class type_caster<inverse_dynamics_identification::FrictionTerms> {
     const auto law = source.cast<std::string>();
     const auto found = std::find(kLaws.begin(), kLaws.end(), law);
     if (found == kLaws.end()) {
-      throw chain_dynamics::ModelError("ArmFitter", "law", "step, load or stribeck",
+      throw chain_dynamics::ModelError("ArmFitter", "law", "step, load, stribeck or memory",
                                        "'" + law + "'", "name one of them");
     }
     value = static_cast<Terms>(found - kLaws.begin());
@@ -126,17 +127,21 @@ std::vector<ArmSamples> samplesOf(const std::vector<Block>& blocks, const Carrie
 }
 
 std::unique_ptr<HeldData> dataOf(const ArmFitter& fitter, std::vector<Block> blocks,
-                                 const Carried& carried, const std::vector<Vector>& times) {
+                                 const Carried& carried, const std::vector<Vector>& times,
+                                 std::vector<Array> before) {
   std::vector<ArmSamples> samples = samplesOf(blocks, carried);
+  for (std::size_t b = 0; b < std::min(before.size(), samples.size()); ++b) {
+    if (before[b].size() > 0) samples[b].before = states(before[b], "before");
+  }
   for (std::size_t b = 0; b < std::min(times.size(), samples.size()); ++b) {
     samples[b].time = times[b];
   }
   const py::gil_scoped_release release;
-  return std::make_unique<HeldData>(HeldData{std::move(blocks), fitter.data(std::move(samples))});
+  return std::make_unique<HeldData>(HeldData{std::move(blocks), std::move(before), fitter.data(std::move(samples))});
 }
 
 Array torques(const ArmFitter& fitter, const ArmFit& of, const Array& q, const Array& qd,
-              const Array& qdd) {
+              const Array& qdd, const std::optional<Array>& before) {
   const ConstMap q_in = states(q, "q"), qd_in = states(qd, "qd"), qdd_in = states(qdd, "qdd");
   const auto n = fitter.description().jointCount();
   for (const ConstMap& in : {q_in, qd_in, qdd_in}) {
@@ -150,7 +155,12 @@ Array torques(const ArmFitter& fitter, const ArmFit& of, const Array& q, const A
   Array result = like(q);
   Map out = columns(result);
   const py::gil_scoped_release release;
-  fitter.torques(of, q_in, qd_in, qdd_in, out);
+  chain_dynamics::ConstStates earlier{nullptr, 0, 0, 1, 0};
+  if (before && before->size() > 0) {
+    requireShape("before", *before, {before->shape(0), n});
+    earlier = states(*before, "before");
+  }
+  fitter.torques(of, q_in, qd_in, qdd_in, out, earlier);
   return result;
 }
 
@@ -204,7 +214,7 @@ void bindIdentification(py::module_& module) {
   bindFit(module);
   using O = ArmFitOptions;
   bindOptions(module, "ArmFitOptions", "How to fit.", "",
-              Field{"law", &O::terms, "of friction: step, load, stribeck"},
+              Field{"law", &O::terms, "of friction: step, load, stribeck, memory"},
               Field{"prior_strength", &O::prior_strength, "of the description's links"},
               Field{"most_passes", &O::most_passes, "over the samples"},
               Field{"without", &O::without, "number of a block that is left out"},
@@ -248,11 +258,12 @@ void bindIdentification(py::module_& module) {
           },
           "What the prior has changed about each described link, in words; empty: nothing.")
       .def("data", &dataOf, "blocks"_a, py::kw_only(), "carried"_a = Carried(),
-           "times"_a = std::vector<Vector>(),
+           "times"_a = std::vector<Vector>(), "before"_a = std::vector<Array>(),
            "Samples of blocks, q, qd, qdd, tau, (N, n) each. carried: a known body of each block, "
            "by\n"
            "the arguments of set_payload(), or None; times: (N,) s of each block, for\n"
-           "whitened_information().")
+           "whitened_information(); before: (K, n) positions before each block, which friction\n"
+           "remembers: where joints turned round suffices.")
       .def(
           "fit",
           [](const ArmFitter& f, const HeldData& held, const ArmFitOptions& options,
@@ -261,8 +272,9 @@ void bindIdentification(py::module_& module) {
           },
           py::call_guard<py::gil_scoped_release>(), "data"_a, "options"_a, "start"_a = py::none(),
           "A fit to the samples of all blocks. start: another one to begin with.")
-      .def("torques", &torques, "fit"_a, "q"_a, "qd"_a, "qdd"_a,
-           "Torques of a fit, friction included: (n,) or (N, n).")
+      .def("torques", &torques, "fit"_a, "q"_a, "qd"_a, "qdd"_a, "before"_a = py::none(),
+           "Torques of a fit, friction included: (n,) or (N, n) in the order of time.\n"
+           "before: (K, n) positions before, as in data().")
       .def("whitened_information", &whitenedInformation, "fit"_a, "data"_a, "law"_a, "noise"_a,
            "What samples say of the m unknowns where errors are like this noise, (m, m).")
       .def("information", &information, "fit"_a, "data"_a, "options"_a,

@@ -235,6 +235,7 @@ Examples
   bindProperties(solver);
   bindQuantities(solver);
   bindChanges(solver);
+  bindFrictionState(module, solver);
 }
 
 }  // namespace inverse_dynamics_tools

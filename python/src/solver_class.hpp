@@ -98,6 +98,7 @@ class Solver {
 void bindProperties(pybind11::class_<Solver>& solver);
 void bindQuantities(pybind11::class_<Solver>& solver);
 void bindChanges(pybind11::class_<Solver>& solver);
+void bindFrictionState(pybind11::module_& module, pybind11::class_<Solver>& solver);
 
 /// What was set since a solver was made: payloads and gravity; empty where it can't be.
 pybind11::dict changesOf(const Solver& solver);

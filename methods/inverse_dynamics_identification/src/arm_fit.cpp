@@ -62,10 +62,45 @@ struct Curved {
   }
 };
 
-/// The curved unknowns of a joint. @param greatest  its greatest velocity.
-std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index joint, double greatest) {
+/// How far and how fast what has friction moves: motors, by the coupling, or joints.
+class Reach {
+ public:
+  explicit Reach(Index joints)
+      : greatest_(VectorXd::Zero(joints)),
+        lower_(VectorXd::Constant(joints, kInfinity)),
+        upper_(-lower_) {}
+
+  void add(const ArmSamples& samples, const OwnedMatrix& coupling) {
+    for (Index k = 0; k < samples.qd.count; ++k) {
+      for (Index j = 0; j < samples.qd.joints; ++j) {
+        double v = samples.qd(j, k), q = samples.q(j, k);
+        for (Index i = 0; i < j && coupling.size() > 0; ++i) {  // lower triangular
+          v += coupling(j, i) * samples.qd(i, k);
+          q += coupling(j, i) * samples.q(i, k);
+        }
+        greatest_[j] = std::max(greatest_[j], std::abs(v));
+        lower_[j] = std::min(lower_[j], q);
+        upper_[j] = std::max(upper_[j], q);
+      }
+    }
+  }
+
+  Index joints() const { return greatest_.size(); }
+  /// The greatest velocity.
+  double velocity(Index j) const { return std::max(greatest_[j], kLeast); }
+  /// From the least to the greatest position.
+  double range(Index j) const { return std::max(upper_[j] - lower_[j], kLeast); }
+
+ private:
+  static constexpr double kLeast = 1e-6;  // of a joint that stands still
+  VectorXd greatest_, lower_, upper_;
+};
+
+/// The curved unknowns of a joint.
+std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index joint, const Reach& reach) {
   using namespace own_column;
   const FrictionPrior& prior = options.friction;
+  const double greatest = reach.velocity(joint), range = reach.range(joint);
   const double factor = std::log(prior.width_factor);
   const double shift = (options.shift ? prior.shift : kHeld) * greatest;
   const double most_shift = options.shift ? prior.most_shift * greatest : 0.0;
@@ -73,9 +108,13 @@ std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index joint, do
       {kShift, &StepFriction::shift, false, 0, shift, -most_shift, most_shift},
       {kWidth, &StepFriction::width, true, prior.width * greatest, factor,
        prior.least_width * greatest, prior.most_width * greatest}};
-  if (options.terms == FrictionTerms::kStribeck) {
+  if (options.terms >= FrictionTerms::kStribeck) {
     curved.push_back({kStribeckVelocity, &StepFriction::vs, true,
                       prior.stribeck_velocity * greatest, factor, 0, greatest});
+  }
+  if (options.terms >= FrictionTerms::kMemory) {
+    curved.push_back({kDistance, &StepFriction::distance, true, prior.distance * range, factor,
+                      prior.least_distance * range, prior.most_distance * range});
   }
   if (options.drive_gains.size() > 0) {
     curved.push_back({ownColumns(options.terms), nullptr, true, options.drive_gains[joint],
@@ -98,20 +137,6 @@ std::vector<Index> linearColumns(FrictionTerms terms) {
     if (c < ownColumns(terms)) columns.push_back(c);
   }
   return columns;
-}
-
-/// Greatest velocities where friction acts: of motors, `coupling qd`, or of joints.
-void addGreatest(const ConstStates& qd, const OwnedMatrix& coupling, VectorXd& greatest) {
-  for (Index k = 0; k < qd.count; ++k) {
-    for (Index j = 0; j < qd.joints; ++j) {
-      double v = qd(j, k);
-      if (coupling.size() > 0) {
-        v = 0;
-        for (Index i = 0; i <= j; ++i) v += coupling(j, i) * qd(i, k);  // lower triangular
-      }
-      greatest[j] = std::max(greatest[j], std::abs(v));
-    }
-  }
 }
 
 bool areGains(Index joints, const OwnedVector& gains) {
@@ -152,12 +177,13 @@ class Rounds {
  public:
   using GramAt = std::function<RegressorGram(const ArmFit&)>;
 
-  Rounds(const std::vector<LinkPrior>& links, const VectorXd& greatest_velocities,
-         const ArmFitOptions& options)
-      : links_(links), options_(options), has_gains_(options.drive_gains.size() > 0) {
-    for (Index j = 0; j < greatest_velocities.size(); ++j) {
-      greatest_.push_back(std::max(greatest_velocities[j], 1e-6));
-      curved_.push_back(curvedUnknowns(options, j, greatest_.back()));
+  Rounds(const std::vector<LinkPrior>& links, Reach reach, const ArmFitOptions& options)
+      : links_(links),
+        options_(options),
+        has_gains_(options.drive_gains.size() > 0),
+        reach_(std::move(reach)) {
+    for (Index j = 0; j < reach_.joints(); ++j) {
+      curved_.push_back(curvedUnknowns(options, j, reach_));
     }
   }
 
@@ -186,8 +212,13 @@ class Rounds {
       tried.drive_gains = options_.drive_gains;
     }
     for (StepFriction& law : tried.friction) {
-      if (options_.terms != FrictionTerms::kStribeck) law.fs = 0;
+      if (options_.terms < FrictionTerms::kStribeck) law.fs = 0;
+      if (options_.terms < FrictionTerms::kMemory) law.fm = 0;
       if (!options_.shift) law.shift = 0;
+    }
+    for (Index j = 0; j < joints(); ++j) {  // of a start without memory
+      double& distance = tried.friction[at(j)].distance;
+      if (distance == 0) distance = options_.friction.distance * reach_.range(j);
     }
     int pass = 1;
     if (start != nullptr) {
@@ -244,8 +275,8 @@ class Rounds {
     }
     for (Index j = 0; j < joints(); ++j) {
       StepFriction& law = fit.friction.emplace_back();
-      law.width = options_.friction.width * greatest_[at(j)];
-      law.vs = options_.friction.stribeck_velocity * greatest_[at(j)];
+      law.width = options_.friction.width * reach_.velocity(j);
+      law.vs = options_.friction.stribeck_velocity * reach_.velocity(j);
     }
     return fit;
   }
@@ -327,7 +358,7 @@ class Rounds {
   const std::vector<LinkPrior>& links_;
   const ArmFitOptions& options_;
   bool has_gains_;                           // whether they are fitted
-  std::vector<double> greatest_;             // velocities
+  Reach reach_;
   std::vector<std::vector<Curved>> curved_;  // of each joint
   Fit last_;  // of the last pass that was no worse, or what to start from
 };
@@ -393,18 +424,20 @@ ArmFit ArmFitter::fit(const ArmData& data, const ArmFitOptions& options,
   checkOptions(joints(), options);
   std::vector<const ArmData::Block*> blocks;
   RegressorGram links = fast_.emptyGram();
-  VectorXd greatest = VectorXd::Zero(joints());
+  Reach reach(joints());
   for (std::size_t b = 0; b < data.blocks_.size(); ++b) {
     if (static_cast<int>(b) == options.without) continue;
     blocks.push_back(&data.blocks_[b]);
     links.add(data.blocks_[b].links);
-    addGreatest(data.blocks_[b].samples.qd, coupling_, greatest);
+    reach.add(data.blocks_[b].samples, coupling_);
   }
   if (links.samples() == 0) throw ModelError("ArmFitter: expected samples, got none");
   const auto gram_at = [&](const ArmFit& fit) { return gramOf(fit, options.terms, blocks, links); };
-  ArmFit found = Rounds(prior_, greatest, options).run(start, gram_at);
+  ArmFit found = Rounds(prior_, reach, options).run(start, gram_at);
   for (Index j = 0; j < joints(); ++j) {
-    if (isCoupled(j)) found.friction[static_cast<std::size_t>(j)].fl = 0;
+    StepFriction& law = found.friction[static_cast<std::size_t>(j)];
+    if (isCoupled(j)) law.fl = 0;
+    if (law.fm == 0) law.distance = 0;
   }
   return found;
 }
@@ -428,10 +461,10 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const ArmData& data,
   result.scores.resize(x.size(), static_cast<Index>(data.blocks_.size()));
   MatrixXd A(x.size(), x.size());
   VectorXd b(x.size());
-  VectorXd greatest = VectorXd::Zero(joints());
+  Reach reach(joints());
   for (std::size_t k = 0; k < data.blocks_.size(); ++k) {
     const ArmData::Block& block = data.blocks_[k];
-    addGreatest(block.samples.qd, coupling_, greatest);
+    reach.add(block.samples, coupling_);
     const RegressorGram gram = gramOf(fit, options.terms, {&block}, block.links);
     gram.normalEquations(weights, A, b);
     result.scores.col(static_cast<Index>(k)) = b - A * x;
@@ -440,7 +473,7 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const ArmData& data,
   FitOptions how;
   how.prior_strength = options.prior_strength;
   Information found = ::inverse_dynamics_identification::information(
-      all, Rounds(prior_, greatest, of).prior(fit, false), how, linear);
+      all, Rounds(prior_, reach, of).prior(fit, false), how, linear);
   result.data = std::move(found.data);
   result.prior = std::move(found.prior);
   return result;

@@ -76,6 +76,21 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
           std::to_string(block.time.size()), "pair each sample with its time");
     }
     for (WhitenedRows& joint : whitened) joint.filter.restart();
+    std::vector<FittedPresliding> memories(static_cast<std::size_t>(n));
+    VectorXd before;
+    const auto of_motor = [&](Index j, const VectorXd& x) {
+      return coupling_.size() > 0 ? coupling_.row(j).dot(x) : x[j];
+    };
+    const auto remember = [&] {
+      for (Index j = 0; j < n && before.size() > 0; ++j) {
+        move(memories[static_cast<std::size_t>(j)], of_motor(j, q) - of_motor(j, before),
+             fit.friction[static_cast<std::size_t>(j)]);
+      }
+    };
+    for (Index k = 0; k < block.before.count; ++k) {
+      for (Index j = 0; j < n; ++j) q[j] = block.before(j, k);
+      remember();
+    }
     for (Index k = 0; k < block.q.count; ++k) {
       if (span.endsBefore(block.time[k])) end_mean();
       span.add(block.time[k]);
@@ -84,14 +99,15 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
         qd[j] = block.qd(j, k);
         qdd[j] = block.qdd(j, k);
       }
+      remember();
       fast_.regressor(q.data(), qd.data(), qdd.data(), Y.data(), n);
       alone.gravityVector(q.data(), gravity.data());
       for (Index j = 0; j < n; ++j) {
         WhitenedRows& joint = whitened[static_cast<std::size_t>(j)];
         joint.row.head(rigid) += Y.row(j).transpose();
-        const double velocity = coupling_.size() > 0 ? coupling_.row(j).dot(qd) : qd[j];
-        ownColumnsAt(fit.friction[static_cast<std::size_t>(j)], velocity, qdd[j],
-                     isCoupled(j) ? 0.0 : std::abs(gravity[j]), own_row);
+        const StepFriction& law = fit.friction[static_cast<std::size_t>(j)];
+        ownColumnsAt(law, of_motor(j, qd), qdd[j], isCoupled(j) ? 0.0 : std::abs(gravity[j]),
+                     memories[static_cast<std::size_t>(j)], own_row);
         joint.row.tail(own) += own_row;
       }
     }

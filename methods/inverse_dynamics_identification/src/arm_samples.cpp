@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chain_dynamics/error.hpp>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/friction_state.hpp>
 #include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/regressor_gram.hpp>
@@ -25,6 +26,7 @@ namespace {
 
 using chain_dynamics::ConstStates;
 using chain_dynamics::FastModel;
+using chain_dynamics::FrictionState;
 using chain_dynamics::GramSamples;
 using chain_dynamics::Model;
 using chain_dynamics::ModelError;
@@ -40,6 +42,10 @@ constexpr Index kMostKept = 20'000;  // samples whose rows are kept: 50 MB of an
 bool isSomething(const LinkParameters& body) { return !body.toVector().isZero(0); }
 
 void checkSamples(Index joints, const ArmSamples& block) {
+  if (block.before.count > 0 && block.before.joints != joints) {
+    throw ModelError("ArmFitter: samples", "before", std::to_string(joints) + " joints",
+                     std::to_string(block.before.joints), "take positions of the same joints");
+  }
   for (const ConstStates& states : {block.q, block.qd, block.qdd, block.tau}) {
     if (states.joints == joints && states.count == block.q.count) continue;
     throw ModelError(
@@ -66,6 +72,15 @@ class Batch {
     for (Rows& column : own_) column.resizeLike(gravity_);
   }
 
+  /// The next rows are of another block, with these positions before.
+  void restart(const ConstStates& before) {
+    memories_.assign(fit_.friction.size(), {});
+    if (before.count == 0) return;
+    for (Index j = 0; j < before.joints; ++j) {
+      presliding(fit_.friction[static_cast<std::size_t>(j)], j, atMotor(before, j));
+    }
+  }
+
   /// Rows of samples, whose torques are what was measured; loaded: the links with what they carry.
   GramSamples rows(const FastModel& alone, const FastModel& loaded, GramSamples samples) {
     const Index size = samples.q.count;
@@ -78,14 +93,10 @@ class Batch {
       const StepFriction& law = fit_.friction[static_cast<std::size_t>(j)];
       const auto part = [&](auto& of) { return of.row(j).head(size).array(); };
       Values load = part(gravity_).abs();
-      Values velocity = valuesOf(qd, j);
       const Values acceleration = valuesOf(qdd, j);
-      for (Index i = 0; i < j && coupling_.size() > 0; ++i) {
-        if (coupling_(j, i) == 0) continue;
-        velocity += coupling_(j, i) * valuesOf(qd, i);
-        load.setZero();
-      }
-      frictionColumns(law, velocity, acceleration, load, columns_,
+      if (coupling_.size() > 0 && !coupling_.row(j).head(j).isZero(0)) load.setZero();
+      frictionColumns(law, atMotor(qd, j), acceleration, load, presliding(law, j, atMotor(q, j)),
+                      columns_,
                       [&](Index c) { return part(own_[static_cast<std::size_t>(c)]); });
       part(tau_) = (has_gains_ ? fit_.drive_gains[j] : 1.0) * valuesOf(samples.tau, j);
       if (carries) part(tau_) -= part(loaded_) - part(alone_);
@@ -106,6 +117,32 @@ class Batch {
     Values values(states.count);
     for (Index k = 0; k < states.count; ++k) values[k] = states(joint, k);
     return values;
+  }
+
+  /// Positions or velocities of the motor of joint j.
+  Values atMotor(const ConstStates& states, Index j) const {
+    Values values = valuesOf(states, j);
+    for (Index i = 0; i < j && coupling_.size() > 0; ++i) {
+      if (coupling_(j, i) != 0) values += coupling_(j, i) * valuesOf(states, i);
+    }
+    return values;
+  }
+
+  /// Presliding of a law along these positions, after those of the batch before.
+  PreslidingValues<Values> presliding(const StepFriction& law, Index j, const Values& position) {
+    PreslidingValues<Values> found;
+    if (columns_ <= own_column::kMemory) return found;
+    found.z = found.unknown = found.z_by_distance = found.unknown_by_distance = position;
+    auto& [memory, last] = memories_[static_cast<std::size_t>(j)];
+    for (Index k = 0; k < position.size(); ++k) {
+      if (last) move(memory, position[k] - *last, law);
+      last = position[k];
+      found.z[k] = memory.z.value;
+      found.unknown[k] = memory.unknown.value;
+      found.z_by_distance[k] = memory.z.derivative[0];
+      found.unknown_by_distance[k] = memory.unknown.derivative[0];
+    }
+    return found;
   }
 
   /// Takes friction of later motors off the torques of the joints that turn them.
@@ -139,6 +176,7 @@ class Batch {
   Index columns_;
   Rows gravity_, tau_, loaded_, alone_;  // of each joint
   std::vector<Rows> own_;
+  std::vector<std::pair<FittedPresliding, std::optional<double>>> memories_;  // and last positions
 };
 
 /// Samples from `first` on, at most kBatch.
@@ -199,6 +237,7 @@ RegressorGram ArmFitter::gramOf(const ArmFit& fit, FrictionTerms terms,
     if (isSomething(samples.carried)) {
       loaded.emplace(robotOf(fit.parameters, nullptr, samples.carried), fast_);
     }
+    batch.restart(samples.before);
     auto rows = block->rows.begin();
     for (Index first = 0; first < samples.q.count; first += kBatch) {
       GramSamples of = batch.rows(alone, loaded ? *loaded : alone, batchOf(samples, first));
@@ -219,8 +258,12 @@ Model ArmFitter::model(const ArmFit& fit) const {
 }
 
 void ArmFitter::torques(const ArmFit& fit, ConstStates q, ConstStates qd, ConstStates qdd,
-                        States tau) const {
-  FastModel(model(fit), fast_).torquesBatch(q, qd, qdd, tau);
+                        States tau, ConstStates before) const {
+  const Model found = model(fit);
+  FastModel(found, fast_).torquesBatch(q, qd, qdd, tau);
+  FrictionState friction(found);
+  friction.moveAlong(before);
+  friction.addAlong(q, qd, tau);
 }
 
 }  // namespace v2

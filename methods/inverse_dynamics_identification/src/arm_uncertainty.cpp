@@ -33,7 +33,8 @@ const Regressor& regressorOf(const InverseDynamicsSolver* solver) {
 /// Own columns of each joint; none where the factor isn't one of so many joints and links.
 Index ownColumnsOf(const ArmUncertainty& uncertainty, Index joints, Index links) {
   for (const FrictionTerms terms :
-       {FrictionTerms::kStep, FrictionTerms::kLoad, FrictionTerms::kStribeck}) {
+       {FrictionTerms::kStep, FrictionTerms::kLoad, FrictionTerms::kStribeck,
+        FrictionTerms::kMemory}) {
     if (uncertainty.factor.rows() == 10 * links + joints * ownColumns(terms)) {
       return ownColumns(terms);
     }
@@ -50,7 +51,7 @@ void checkFits(const ArmUncertainty& uncertainty, Index joints, Index links) {
   throw InvalidParameterValueException(
       "arm uncertainty", "",
       std::to_string(joints) + " laws of friction and finite numbers in 10 rows per link (" +
-          std::to_string(links) + ") and 6, 7 or 9 per joint",
+          std::to_string(links) + ") and 6, 7, 9 or 11 per joint",
       std::to_string(laws) + " laws and " + std::to_string(uncertainty.factor.rows()) + " rows" +
           (uncertainty.factor.allFinite() ? "" : ", not all of them finite"),
       "take that of the solver's own model");
@@ -97,7 +98,7 @@ void ArmDeviations::compute(const inverse_dynamics_solver::ConstVectorRef& q,
   solver_->getGravityVector(q, gravity_);
   for (Index j = 0; j < n; ++j) {
     const StepFriction& law = friction_[static_cast<std::size_t>(j)];
-    ownColumnsAt(law, qd[j], qdd[j], std::abs(gravity_[j]), own_);
+    ownColumnsAt(law, qd[j], qdd[j], std::abs(gravity_[j]), {}, own_);
     const Index before = before_[static_cast<std::size_t>(j)], moved = Y_.cols() - before;
     D.col(j).noalias() = factor_.middleCols(before, moved) * Y_.row(j).tail(moved).transpose();
     D.col(j).noalias() += factor_.middleCols(Y_.cols() + columns * j, columns) * own_;

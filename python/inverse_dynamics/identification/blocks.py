@@ -19,6 +19,7 @@ from inverse_dynamics.identification.result import IdentificationError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from inverse_dynamics._core import ArmData, ArmFitter
     from inverse_dynamics.arrays import Floats, Mask
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
@@ -47,6 +48,7 @@ class Block:
     tau: Floats  # measured
     counts: Mask  # (M,) valid samples: no repeats, no start transient
     rests: Mask  # (M,) no joint moves: friction may be anything up to its step
+    before: Floats  # (K, n) positions before the block, which friction remembers: where joints turned round
 
     def __len__(self) -> int:
         return len(self.time)
@@ -70,7 +72,13 @@ class Block:
     def parts(self, count: int) -> list[Block]:
         """The block in so many parts, with its accelerations."""
         edges = np.linspace(0, len(self.time), count + 1).round().astype(int)
-        return [self.rows(slice(first, after)) for first, after in pairwise(edges)]
+        return [
+            replace(
+                self.rows(slice(first, after)),
+                before=_turning(np.concatenate([self.before, self.q[:first]])),
+            )
+            for first, after in pairwise(edges)
+        ]
 
     def rows(self, rows: slice | Mask) -> Block:
         """Some of the samples, with their accelerations."""
@@ -83,6 +91,15 @@ class Block:
             return self.q, self.qd, self.qdd, self.tau
         c = self.counts
         return self.q[c], self.qd[c], self.qdd[c], self.tau[c]
+
+
+def data_of(fitter: ArmFitter, blocks: Sequence[Block], times: Sequence[Floats] = ()) -> ArmData:
+    """The samples of blocks, for fits."""
+    return fitter.data(
+        [block.fitted for block in blocks],
+        times=list(times),
+        before=[block.before for block in blocks],
+    )
 
 
 def blocks_of(evaluation: Evaluation, count: int) -> list[Block]:
@@ -113,7 +130,16 @@ def block_of(evaluation: Evaluation, rows: slice) -> Block:
         tau=evaluation.measured[rows],
         counts=(used & samples.kept)[rows],
         rests=(np.abs(log.qd[rows]) < _REST * greatest).all(axis=1),
+        before=_turning(log.q[: rows.start]),
     )
+
+
+def _turning(q: Floats) -> Floats:
+    """The positions (M, n) at which a joint turns round, the first and the last."""
+    steps = np.sign(np.diff(q, axis=0))
+    turns = np.ones(len(q), dtype=bool)
+    turns[1:-1] = (steps[1:] != steps[:-1]).any(axis=1)
+    return q[turns]
 
 
 def _accelerations(evaluation: Evaluation, rows: slice) -> tuple[Floats, Floats]:

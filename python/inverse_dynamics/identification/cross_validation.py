@@ -16,7 +16,7 @@ import numpy as np
 
 from inverse_dynamics._core import ArmFitOptions
 from inverse_dynamics.evaluation.bands import NORMAL, rest_share
-from inverse_dynamics.identification.blocks import moving
+from inverse_dynamics.identification.blocks import data_of, moving
 from inverse_dynamics.identification.result import LAWS, Choice
 
 if TYPE_CHECKING:
@@ -45,7 +45,9 @@ _DELAY_STEP = 0.008  # s, at least
 _MOST_DELAY_STEPS = 8
 _VERTICES = 2
 _LEAST_DELAY = 1e-4  # s; a shorter one counts as none
-_DELAY_LAW = "load"  # what delays are looked for with
+# What delays are looked for with: friction that lags behind a reversal looks like a delay to a law without memory, and a
+# law with memory may take some of its own lag back. The lesser one of both is a delay.
+_DELAY_LAWS = ("load", "memory")
 
 
 @dataclass(frozen=True)
@@ -70,44 +72,41 @@ class Chosen:
 def errors_of(fitter: ArmFitter, fit: ArmFit, block: Block) -> Floats:
     """Measured minus computed torques of the valid samples, (M, n)."""
     q, qd, qdd, tau = block.fitted
-    return tau - fitter.torques(fit, q, qd, qdd)
+    return tau - fitter.torques(fit, q, qd, qdd, before=block.before)
 
 
 def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     """The fit to all blocks, chosen by leaving out each part in turn.
 
-    The shift of a friction step differs between days. Choices are made with it, so that it doesn't blur them; the fit
-    omits it, since it would be a constant force at rest. Choices use equidistant samples of long recordings; the fit
-    uses all.
+    Choices use equidistant samples of long recordings; the fit uses all.
     """
     blocks = moving(blocks)
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
     recorded = _Parts(fitter, blocks, 0.0, step)
     parts = _without_delay(fitter, blocks, recorded, step)
-    alternatives: list[_Alternative] = []
-    whole: dict[str, ArmFit] = {}
-    start = None
+    simplest = next(iter(LAWS))
+    fits = {simplest: parts.fit(simplest, STRENGTHS[1], None)}
+    noise = fits[simplest].noise
+    usual = _strengths(parts, simplest, fits[simplest], noise)
+    strength = usual[_simplest(usual, noise, parts.delay)[0]].prior_strength
+    laws = []
     for law in LAWS:
-        options = ArmFitOptions(law, prior_strength=STRENGTHS[1], shift=True)
-        start = whole[law] = fitter.fit(parts.data, options, start)
-        starts = [start] * len(parts.blocks)
-        for strength in STRENGTHS:
-            alternatives.append(parts.left_out(law, strength, starts))
-            starts = alternatives[-1].fits
-    noise = whole["step"].noise
+        fits[law] = parts.fit(law, strength, fits[laws[-1].law if laws else simplest])
+        laws.append(parts.left_out(law, strength, [fits[law]] * len(parts.blocks)))
+    law = laws[_simplest(laws, noise, parts.delay)[0]].law
+    alternatives = [
+        found
+        for one in laws
+        for found in (_strengths(parts, law, fits[law], noise) if one.law == law else [one])
+    ]
     chosen, choices = _simplest(alternatives, noise, parts.delay)
-    if alternatives[chosen].prior_strength == STRENGTHS[-1]:
-        alternatives[chosen + 1 : chosen + 1] = _weaker(parts, alternatives[chosen], noise)
-        chosen, choices = _simplest(alternatives, noise, parts.delay)
     best = alternatives[chosen]
     blocks = [block.later(parts.delay) for block in blocks]
-    data = parts.data if step == 1 else fitter.data([block.fitted for block in blocks])
+    data = parts.data if step == 1 else data_of(fitter, blocks)
     options = ArmFitOptions(best.law, prior_strength=best.prior_strength)
-    fit = fitter.fit(data, options, whole[best.law])
+    fit = fitter.fit(data, options, fits[best.law])
     # as solvers compute torques: the delay isn't made up for
-    tested = parts.left_out(
-        best.law, best.prior_strength, best.fits, shift=False, tested=recorded.blocks
-    )
+    tested = parts.left_out(best.law, best.prior_strength, best.fits, tested=recorded.blocks)
     errors = np.abs(np.concatenate(tested.errors))
     qd = np.concatenate([part.fitted[1] for part in recorded.blocks])
     return Chosen(
@@ -155,8 +154,12 @@ class _Parts:
         each = max(1, round(_FOLDS / len(blocks)))
         self.delay = delay
         self.blocks = [part for block in blocks for part in block.later(delay, step).parts(each)]
-        self.data = fitter.data([part.fitted for part in self.blocks])
+        self.data = data_of(fitter, self.blocks)
         self._fitter = fitter
+
+    def fit(self, law: str, strength: float, start: ArmFit | None) -> ArmFit:
+        """The fit to all parts."""
+        return self._fitter.fit(self.data, ArmFitOptions(law, prior_strength=strength), start)
 
     def left_out(
         self,
@@ -165,11 +168,10 @@ class _Parts:
         starts: Sequence[ArmFit],
         *,
         passes: int = _PASSES,
-        shift: bool = True,
         tested: Sequence[Block] | None = None,
     ) -> _Alternative:
         """Fits to all parts but one, each from a start, and the errors of that part, or of that of `tested`."""
-        options = ArmFitOptions(law, prior_strength=strength, most_passes=passes, shift=shift)
+        options = ArmFitOptions(law, prior_strength=strength, most_passes=passes)
         fits = []
         for k, start in enumerate(starts):
             options.without = k
@@ -183,19 +185,24 @@ def _without_delay(
     fitter: ArmFitter, blocks: Sequence[Block], recorded: _Parts, step: int
 ) -> _Parts:
     """Parts with the delay of least noise made up for, if those that are left out are predicted better."""
-    delay, start = _delay(fitter, blocks, step)
-    if delay == 0:
-        return recorded
+    delay = 0.0
+    for law in _DELAY_LAWS:
+        found, start = _delay(fitter, blocks, step, law)
+        if found == 0 or found * (delay or found) < 0:
+            return recorded
+        delay = min(found, delay or found, key=abs)
     later = _Parts(fitter, blocks, delay, step)
     starts = [start] * len(recorded.blocks)
     before, after = (
-        parts.left_out(_DELAY_LAW, STRENGTHS[1], starts, passes=1).scores(start.noise).mean()
+        parts.left_out(_DELAY_LAWS[-1], STRENGTHS[1], starts, passes=1).scores(start.noise).mean()
         for parts in (recorded, later)
     )
     return later if after < before else recorded
 
 
-def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[float, ArmFit]:
+def _delay(
+    fitter: ArmFitter, blocks: Sequence[Block], thinned: int, law: str
+) -> tuple[float, ArmFit]:
     """By how much the torques are later than the states [s], and a fit with nearly that delay; zero: there is none.
 
     The vertex of the parabola through the noise at three delays, gone to twice. Far from the least noise, where there
@@ -203,16 +210,14 @@ def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[fl
     """
     periods = np.concatenate([np.diff(block.instants[block.used]) for block in blocks])
     step = max(float(np.median(periods[periods > 0])), _DELAY_STEP)
-    options = ArmFitOptions(
-        _DELAY_LAW, prior_strength=STRENGTHS[1], most_passes=_PASSES, shift=True
-    )
+    options = ArmFitOptions(law, prior_strength=STRENGTHS[1], most_passes=_PASSES)
     center, vertices = 0.0, 0
     start: ArmFit | None = None
     for _ in range(_MOST_DELAY_STEPS):
         costs = []
         for delay in (center - step, center, center + step):
-            samples = [block.later(delay, thinned).fitted for block in blocks]
-            start = fitter.fit(fitter.data(samples), options, start)
+            samples = [block.later(delay, thinned) for block in blocks]
+            start = fitter.fit(data_of(fitter, samples), options, start)
             # samples at the ends of blocks are fewer where the delay is greater
             costs.append(2 * float(np.log(start.noise).sum()))
         slope, curvature = costs[0] - costs[2], costs[0] - 2 * costs[1] + costs[2]
@@ -229,14 +234,21 @@ def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[fl
     return (center if found else 0.0), start
 
 
-def _weaker(parts: _Parts, usual: _Alternative, noise: Floats) -> list[_Alternative]:
-    """The same with ever weaker priors, as far as they predict better; none where they don't clearly."""
-    found, errors = [usual], [np.inf, usual.scores(noise).mean()]
-    while errors[-1] < _SETTLED * errors[-2] and found[-1].prior_strength > _WEAKEST:
-        strength = found[-1].prior_strength / 10
-        found.append(parts.left_out(usual.law, strength, found[-1].fits))
+def _strengths(parts: _Parts, law: str, start: ArmFit, noise: Floats) -> list[_Alternative]:
+    """Fits with usual prior strengths, and with ever weaker ones as far as they predict clearly better."""
+    found = [parts.left_out(law, STRENGTHS[0], [start] * len(parts.blocks))]
+    for strength in STRENGTHS[1:]:
+        found.append(parts.left_out(law, strength, found[-1].fits))
+    usual = len(found)
+    errors = [alternative.scores(noise).mean() for alternative in found]
+    if errors[-1] > min(errors):
+        return found
+    while found[-1].prior_strength > _WEAKEST:
+        found.append(parts.left_out(law, found[-1].prior_strength / 10, found[-1].fits))
         errors.append(found[-1].scores(noise).mean())
-    return found[1:] if min(errors) < _CLEARLY * errors[1] else []
+        if errors[-1] > _SETTLED * errors[-2]:
+            break
+    return found if min(errors) < _CLEARLY * errors[usual - 1] else found[:usual]
 
 
 def _simplest(

@@ -378,7 +378,7 @@ def _held_out(
         for block in group:
             motion = block.q, block.qd, block.qdd
             torques = baseline_torques(solvers, motion, fitted)
-            torques["identified"] = fitter.torques(chosen.fit, *motion)
+            torques["identified"] = fitter.torques(chosen.fit, *motion, before=block.before)
             found.append(
                 HeldOutBlock(
                     recording=block.recording,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.identification.blocks import data_of
 from inverse_dynamics.identification.result import Interval, PriorDecided
 
 if TYPE_CHECKING:
@@ -36,8 +37,10 @@ _OWN = (
     ("fl", False),
     ("fs", False),
     ("vs", True),
+    ("fm", False),
+    ("distance", True),
 )
-_COLUMNS = {"step": 6, "load": 7, "stribeck": 9}  # of _OWN, that a law has
+_COLUMNS = {"step": 6, "load": 7, "stribeck": 9, "memory": 11}  # of _OWN, that a law has
 _OWN_UNITS = {  # of a revolute joint, and of a prismatic one
     "rotor_inertia": ("kg m^2", "kg"),
     "fv": ("N m s/rad", "N s/m"),
@@ -48,6 +51,8 @@ _OWN_UNITS = {  # of a revolute joint, and of a prismatic one
     "fl": ("", ""),
     "fs": ("N m", "N"),
     "vs": ("rad/s", "m/s"),
+    "fm": ("N m", "N"),
+    "distance": ("rad", "m"),
 }
 
 _CLUSTERS = 10
@@ -130,11 +135,8 @@ def knowledge(
 ) -> Knowledge:
     """That of a fit to blocks, which are cut further, to about ten clusters."""
     each = max(1, round(_CLUSTERS / len(blocks)))
-    clusters = []
-    for block in blocks:
-        pieces = [np.array_split(values, each) for values in block.fitted]
-        clusters += list(zip(*pieces, strict=True))
-    data, prior, scores = fitter.information(fit, fitter.data(clusters), options)
+    clusters = [part for block in blocks for part in block.rows(block.counts).parts(each)]
+    data, prior, scores = fitter.information(fit, data_of(fitter, clusters), options)
     values = _values(fit, options.law)
     none = np.zeros((len(values), 0))
     return Knowledge(fitter.joint_names, values, fitter.prior, data, prior, scores, none)
@@ -184,7 +186,7 @@ def assumed(
     )
     for change in changes:
         moved = [replace(b, tau=b.tau + torques) for b, torques in zip(blocks, change, strict=True)]
-        again = fitter.fit(fitter.data([block.fitted for block in moved]), options, fit)
+        again = fitter.fit(data_of(fitter, moved), options, fit)
         steps.append((_values(again, options.law) - values) / unit)
     return np.array(steps).T
 

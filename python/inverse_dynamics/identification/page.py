@@ -101,7 +101,14 @@ def _summary(found: Identification) -> ReportSummary:
     )
 
 
-_FRICTION_UNITS = {"fv": "N m s/rad", "fl": "1", "vs": "rad/s", "shift": "rad/s", "width": "rad/s"}
+_FRICTION_UNITS = {
+    "fv": "N m s/rad",
+    "fl": "1",
+    "vs": "rad/s",
+    "shift": "rad/s",
+    "width": "rad/s",
+    "distance": "rad",
+}
 
 
 def _friction(found: Identification) -> ReportTable:
@@ -119,8 +126,9 @@ def _friction(found: Identification) -> ReportTable:
             )
             for j, (joint, law) in enumerate(zip(found.joints, found.model.friction, strict=True))
         ],
-        note="fv qd + fo + (fc + fl |g(q)| + fs exp(-(qd / vs)²)) tanh((qd + shift) / width); prismatic joints: "
-        "m for rad, N for N m, kg for kg m². fo and shift may do work, and differ between recordings.",
+        note="fv qd + fo + (fc + fl |g(q)| + fm + fs exp(-(qd / vs)²)) tanh((qd + shift) / width); with a distance, fm "
+        "and fs lag behind a reversal by about so much; prismatic joints: m for rad, N for N m, kg for kg m². fo and "
+        "shift may do work, and differ between recordings.",
     )
 
 

@@ -48,6 +48,7 @@ LAWS = {
     "step": "viscous friction and a step",
     "load": "viscous friction, and a step that grows with the load of gravity",
     "stribeck": "viscous friction, and a step that grows with the load and falls with velocity",
+    "memory": "viscous friction, a step that grows with the load and falls with velocity, and presliding",
 }
 """Friction laws to choose from, the simplest first: all are smooth_coulomb of the model file."""
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.result import Identification
 
-_TORQUES = ("fv", "fc", "fl", "fs")  # of smooth_coulomb
+_TORQUES = ("fv", "fc", "fl", "fs", "fm")  # of smooth_coulomb
 _FEWEST = 3  # recordings: two always lie on a line
 
 

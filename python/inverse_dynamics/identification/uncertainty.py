@@ -14,6 +14,7 @@ import numpy as np
 
 from inverse_dynamics import _core
 from inverse_dynamics.evaluation.bands import LEVEL, SHARE, TorqueBand
+from inverse_dynamics.identification.blocks import data_of
 from inverse_dynamics.identification.cross_validation import errors_of
 from inverse_dynamics.identification.result import Level, valid_samples
 from inverse_dynamics.outputs.plain import plain
@@ -54,7 +55,7 @@ def factor_of(
         rows.append(time - time[0] + end)
         end = float(rows[-1][-1]) + _APART
     noise = _core.residual_noise(np.concatenate(rows), errors - errors.mean(axis=0))
-    samples = fitter.data([block.fitted for block in blocks], times=times)
+    samples = data_of(fitter, blocks, times)
     data = fitter.whitened_information(fit, samples, law, noise)
     information = data + known.prior
     scale = 1 / np.sqrt(np.diag(information))

@@ -32,7 +32,7 @@ SCHEMA = 4
 _KEYS = {"schema", "model_sha256", "friction", "deviations", "held_out"}
 _BAND = {"noise", "level", "share"}
 _NUMBERS = {"fv", "fc", "width"}  # of smooth_coulomb
-_OPTIONAL_NUMBERS = {"shift", "fo", "fl", "fs", "vs"}
+_OPTIONAL_NUMBERS = {"shift", "fo", "fl", "fs", "vs", "fm", "distance"}
 
 
 def model_errors_file(model: Path) -> Path:

@@ -47,13 +47,15 @@
 namespace inverse_dynamics_identification {
 inline namespace v2 {
 
-/// N samples of n joints: a block of a recording, one sample per column. Views.
+/// N samples of n joints in the order of time: a block of a recording, one sample per column. Views.
 struct ArmSamples {
   chain_dynamics::ConstStates q, qd, qdd;  ///< rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2)
   chain_dynamics::ConstStates tau;         ///< N m (prismatic N); A where drive gains are fitted
   /// A known body at the tip, in the tip frame and about its origin.
   LinkParameters carried = LinkParameters::zero();
   OwnedVector time = {};  ///< N, ascending; s; for whitenedInformation() alone
+  /// Positions before the first sample, which friction remembers: where joints turned round suffices.
+  chain_dynamics::ConstStates before = {nullptr, 0, 0, 1, 0};
 };
 
 /// Blocks of samples for any number of fits. What their views look at must live as long.
@@ -70,7 +72,7 @@ class ArmData {
   std::vector<Block> blocks_;
 };
 
-/// Prior of friction. Velocities are shares of a joint's greatest.
+/// Prior of friction. Velocities are shares of a joint's greatest, distances of its range of motion.
 struct FrictionPrior {
   double width = 0.05;         ///< of the step
   double width_factor = 2.7;   ///< by which it may well differ
@@ -81,6 +83,9 @@ struct FrictionPrior {
   double load = 0.1;               ///< standard deviation of fl
   double most_load = 0.5;          ///< fl is below
   double stribeck_velocity = 0.1;  ///< where the step has fallen
+  double distance = 0.02;          ///< of presliding
+  double least_distance = 0.0005;
+  double most_distance = 0.2;
 };
 
 /// Prior of a drive gain: a factor by which it may differ from its starting value.
@@ -114,7 +119,7 @@ struct ArmFit {
 
 /// What samples and prior say of the unknowns at a fit: ten parameters of each link, then
 /// ownColumns(terms) of each joint, and one more of log(drive gain) where these were fitted; those of
-/// shift, log(width), log(vs) and log(drive gain) are steps from the fit.
+/// shift, log(width), log(vs), log(distance) and log(drive gain) are steps from the fit.
 struct ArmInformation {
   OwnedMatrix data;    ///< unknowns x unknowns: half the second derivatives of the weighted squares
   OwnedMatrix prior;   ///< the same of prior and penalties
@@ -175,9 +180,12 @@ class ArmFitter {
   /// @throws chain_dynamics::ModelError  a fit of another arm.
   chain_dynamics::Model model(const ArmFit& fit) const;
 
-  /// `tau = H qdd + C qd + g + rotor_inertia qdd + f` of N states.
+  /// `tau = H qdd + C qd + g + rotor_inertia qdd + f` of N states in the order of time.
+  ///
+  /// @param before  as ArmSamples::before.
   void torques(const ArmFit& fit, chain_dynamics::ConstStates q, chain_dynamics::ConstStates qd,
-               chain_dynamics::ConstStates qdd, chain_dynamics::States tau) const;
+               chain_dynamics::ConstStates qdd, chain_dynamics::States tau,
+               chain_dynamics::ConstStates before = {nullptr, 0, 0, 1, 0}) const;
 
  private:
   using Gram = chain_dynamics::RegressorGram;
