@@ -95,9 +95,8 @@ std::string rootOf(const Solver& solver) {
 }
 
 std::string tipOf(const Solver& solver) {
-  if (!solver.get().tipNames().empty()) return solver.get().tipNames().front();
-  std::string stated = textParameter(solver, "tip");
-  if ((!stated.empty() && stated != "*") || solver.origin().urdf.empty()) return stated;
+  std::string first = solver.get().tipNames().front();
+  if (!first.empty() || solver.origin().urdf.empty()) return first;
   return describedBy(solver).attr("tip")(solver.joints().back()).cast<std::string>();
 }
 
@@ -113,11 +112,22 @@ py::dict stated(const chain_dynamics::JointLimits& limits, bool zero) {
   return found;
 }
 
-/// The joints of a model file, or the coordinates of a tree, which joints that mimic them restrict.
-std::vector<chain_dynamics::Joint> modelJoints(const Solver& solver) {
+/// Whether the solver's robot is a tree of the description: it has several tips, or joints that mimic others.
+bool isTree(const Solver& solver, const chain_dynamics::RobotDescription& robot) {
   const std::vector<std::string>& tips = solver.get().tipNames();
-  if (tips.empty())
-    return chain_dynamics::modelFromFile(textParameter(solver, "model")).chain.joints();
+  if (tips.size() > 1) return true;
+  std::size_t link = robot.linkIndex(tips.front());
+  while (link != robot.kNone && robot.links[link].parent_joint != robot.kNone) {
+    const auto& joint = robot.joints[robot.links[link].parent_joint];
+    if (joint.mimic) return true;
+    link = joint.parent;
+  }
+  return false;
+}
+
+/// The coordinates of a tree, which joints that mimic them restrict.
+std::vector<chain_dynamics::Joint> treeJoints(const Solver& solver,
+                                              const chain_dynamics::RobotDescription& robot) {
   chain_dynamics::UrdfOptions options;
   options.root = textParameter(solver, "root");
   options.allow_massless = true;
@@ -127,21 +137,25 @@ std::vector<chain_dynamics::Joint> modelJoints(const Solver& solver) {
     return std::get<double>(found->second);
   };
   options.locked_position = locked;
-  return mechanismFromRobot(chain_dynamics::robotFromUrdf(solver.origin().urdf), options, tips)
-      .coordinates.joints();
+  return mechanismFromRobot(robot, options, solver.get().tipNames()).coordinates.joints();
 }
 
 /// (n,) each, by name; infinite where none is stated.
 ParameterDict limitsOf(const Solver& solver) {
   py::list joints;
   const std::string model = textParameter(solver, "model");
-  const bool is_tree = !solver.get().tipNames().empty();
-  if (!is_tree && !solver.origin().urdf.empty()) {
-    const py::object chain =
-        describedBy(solver).attr("chain")(tupleOf(solver.joints()), textParameter(solver, "root"));
-    for (const auto& joint : chain) joints.append(joint.attr("limits"));
-  } else if (is_tree || std::filesystem::is_regular_file(model)) {
-    for (const auto& joint : modelJoints(solver)) joints.append(stated(joint.limits, is_tree));
+  if (!solver.origin().urdf.empty()) {
+    const auto robot = chain_dynamics::robotFromUrdf(solver.origin().urdf);
+    if (isTree(solver, robot)) {
+      for (const auto& joint : treeJoints(solver, robot)) joints.append(stated(joint.limits, true));
+    } else {
+      const py::object chain = describedBy(solver).attr("chain")(tupleOf(solver.joints()),
+                                                                 textParameter(solver, "root"));
+      for (const auto& joint : chain) joints.append(joint.attr("limits"));
+    }
+  } else if (std::filesystem::is_regular_file(model)) {
+    const auto from_file = chain_dynamics::modelFromFile(model);
+    for (const auto& joint : from_file.chain.joints()) joints.append(stated(joint.limits, false));
   }
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const auto n = static_cast<Eigen::Index>(solver.joints().size());
@@ -180,7 +194,8 @@ void bindProperties(py::class_<Solver>& solver) {
                              "description says it.")
       .def_property_readonly(
           "tip_names", [](const Solver& s) { return tupleOf(s.get().tipNames()); },
-          "Links that are tips of a tree; none of a chain.")
+          "Links that are tips, of a chain one; an empty name: that of a model file\n"
+          "without a stated tip.")
       .def_property_readonly(
           "limits", &limitsOf,
           "Of the joints, by name, (n,) each: lower, upper (rad, m), velocity\n"

@@ -153,7 +153,8 @@ Mechanism withLinks(const Mechanism& mechanism, const std::vector<LinkParameters
   const Chain& coordinates = mechanism.coordinates;
   requireCount(mechanism, "links", before.size(), links.size());
   requireCount(mechanism, "rotors", coordinates.joints().size(), rotors.size());
-  if (mechanism.branches.empty()) return {withParts(coordinates, links, rotors), {}};
+  if (mechanism.branches.empty())
+    return {withParts(coordinates, links, rotors), {}, {}, mechanism.tip};
 
   Mechanism result{withParts(coordinates, coordinates.links(), rotors), mechanism.branches};
   std::vector<bool> placed(rotors.size(), false);

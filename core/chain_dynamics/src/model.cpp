@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "chain_dynamics/coriolis_matrix.hpp"
 #include "chain_dynamics/coriolis_vector.hpp"
@@ -231,6 +232,13 @@ void checkExperience(const Model& model) {
 }
 
 }  // namespace
+
+std::vector<std::string> tipNames(const Model& model) {
+  if (model.branches.empty()) return {model.tip};
+  std::vector<std::string> tips;
+  for (const Branch& branch : model.branches) tips.push_back(branch.tip);
+  return tips;
+}
 
 void checkModel(const Model& model) {
   checkParameterSets(model.chain, setsOf(model));

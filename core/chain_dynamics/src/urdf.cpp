@@ -759,7 +759,7 @@ Mechanism mechanismFromRobot(const RobotDescription& robot, const UrdfOptions& o
       std::none_of(paths[0].begin(), paths[0].end(), mimics)) {
     UrdfOptions one = options;
     one.tip = robot.links[links[0]].name;
-    return {chainFromRobot(robot, one), {}};
+    return {chainFromRobot(robot, one), {}, {}, one.tip};
   }
 
   Family family = familyOf(robot, options, paths, true);

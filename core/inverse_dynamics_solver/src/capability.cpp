@@ -24,10 +24,11 @@ std::size_t Capability::tipIndex(const char* method, const std::string& tip) con
   const std::vector<std::string>& tips = torqueSolver().tipNames();
   const auto found = std::find(tips.begin(), tips.end(), tip);
   if (found != tips.end()) return static_cast<std::size_t>(found - tips.begin());
-  throw InvalidParameterValueException(
-      std::string(method) + ": argument tip", "wrong value",
-      tips.empty() ? "none, as a chain has one tip" : "one of " + chain_dynamics::joined(tips),
-      "'" + tip + "'", "the parameter 'tip' names the tips");
+  throw InvalidParameterValueException(std::string(method) + ": argument tip", "wrong value",
+                                       tips.front().empty()
+                                           ? "none, as the one tip has no name"
+                                           : "one of " + chain_dynamics::joined(tips),
+                                       "'" + tip + "'", "the parameter 'tip' names the tips");
 }
 
 }  // namespace v2

@@ -3,6 +3,7 @@
 
 #include <pthread.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -16,7 +17,6 @@
 #include <vector>
 
 #include "chain_dynamics/error.hpp"
-#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/model.hpp"
 #include "chain_dynamics/spatial.hpp"
 #include "chain_dynamics/text.hpp"
@@ -78,15 +78,13 @@ namespace {
 std::size_t tipOf(const chain_dynamics::Model& model, const std::string& name,
                   const RigidBody& body) {
   if (body.tip.empty()) return 0;
-  std::vector<std::string> tips;
-  for (const chain_dynamics::Branch& branch : model.branches) {
-    if (branch.tip == body.tip) return tips.size();
-    tips.push_back(branch.tip);
-  }
-  throw chain_dynamics::ModelError(
-      "payload '" + name + "'", "tip",
-      tips.empty() ? "none, as a chain has one tip" : "one of " + chain_dynamics::joined(tips),
-      "'" + body.tip + "'", "the parameter 'tip' names the tips");
+  const std::vector<std::string> tips = tipNames(model);
+  const auto found = std::find(tips.begin(), tips.end(), body.tip);
+  if (found != tips.end()) return static_cast<std::size_t>(found - tips.begin());
+  throw chain_dynamics::ModelError("payload '" + name + "'", "tip",
+                                   tips.front().empty() ? "none, as the one tip has no name"
+                                                        : "one of " + chain_dynamics::joined(tips),
+                                   "'" + body.tip + "'", "the parameter 'tip' names the tips");
 }
 
 }  // namespace

@@ -47,6 +47,7 @@ void InverseDynamicsSolver::initialize(const Parameters& parameters,
   }
 
   info.joint_types.resize(info.joint_names.size(), chain_dynamics::JointType::kRevolute);
+  if (info.tip_names.empty()) info.tip_names.emplace_back();
 
   // Nothing below can fail.
   info_ = std::move(info);

@@ -40,9 +40,9 @@ auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
   const bool inertia_is_physical = bare->inertiaIsPhysical();
   JointInfo info{chain.jointNames(), chain.warnings(), chain.jointTypes()};
   std::vector<std::shared_ptr<const PooledTip>> tips;
-  for (const chain_dynamics::Branch& branch : bare->branches) {
+  info.tip_names = chain_dynamics::tipNames(*bare);
+  while (tips.size() < info.tip_names.size()) {
     tips.push_back(std::make_shared<const PooledTip>(*this, tips.size()));
-    info.tip_names.push_back(branch.tip);
   }
   DescriptionFriction friction = descriptionFriction(configuration, chain);
   info.warnings.insert(info.warnings.end(), friction.warnings.begin(), friction.warnings.end());

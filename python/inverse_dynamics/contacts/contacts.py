@@ -398,11 +398,9 @@ def _wrenches(
         tip = TipWrench(solver, thresholds.noise)
     except InvalidParameterError as error:
         return None, None, (f"no wrench at the tip: {error}",)
-    notes = [
-        f"the wrench is that at {first}, the first tip, as if nothing else were touched"
-        for first in solver.tip_names[:1]
-    ]
-    return *tip.run(estimates.q, estimates.torques), tuple(notes)
+    note = f"the wrench is that at {solver.tip}, the first tip, as if nothing else were touched"
+    several = len(solver.tip_names) > 1
+    return *tip.run(estimates.q, estimates.torques), (note,) if several else ()
 
 
 def _interruptions(estimates: _Estimates) -> tuple[tuple[float, float], ...]:

@@ -125,11 +125,14 @@ def arm_model(arm: Arm, *, without_gravity: bool = False) -> ArmModel:
     with suppress(SolverError):  # solvers needn't be able to
         model = replace(model, gravity_direction=solver.gravity, pulled=pulled)
     with suppress(SolverError):
-        bodies, tips = solver.payloads.values(), solver.tip_names or ("",)
+        bodies, tips = solver.payloads.values(), solver.tip_names
         masses = dict.fromkeys(tips, 0.0)
         for body in bodies:
             masses[body.get("tip", tips[0])] += body["mass"]
-        carriers = (Carrier(tip, mass, partial(loaded, tip)) for tip, mass in masses.items())
+        carriers = (
+            Carrier(tip if len(tips) > 1 else "", mass, partial(loaded, tip))
+            for tip, mass in masses.items()
+        )
         model = replace(model, carriers=tuple(carriers))
     with suppress(SolverError, RobotError):
         if description:

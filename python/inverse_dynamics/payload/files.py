@@ -31,7 +31,7 @@ def yaml_text(payload: Payload) -> str:
         f"center_of_mass: {yaml_list(payload.center_of_mass)}  # m, tip frame, +- "
         + ", ".join(f"{width:.2g}" if math.isfinite(width) else "any" for width in center),
     ]
-    if tips := evaluation.arm.solver.tip_names:
+    if len(tips := evaluation.arm.solver.tip_names) > 1:
         lines.append(f"tip: {tips[0]}")
     if found.inertia_is_known:
         widths = upper(found.inertia_half_width)

@@ -69,11 +69,9 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
         reason = reason.removesuffix(", or set allow_massless to true")  # MuJoCo can't
         raise SimulationError(f"robot description: {reason}") from error
 
-    tips = solver.tip_names or (solver.tip,)
-    joints = _joints_to(tips, described)
+    joints = _joints_to(solver.tip_names, described)
     moves = positions_of(described, names)
-    order = [joint.name for joint in described.joints] if solver.tip_names else names
-    moves = {name: moves[name] for name in order if name in moves and name in joints}
+    moves = {name: move for name, move in moves.items() if name in joints}
 
     def limit(name: str) -> Floats:
         return np.asarray(stated.get(name, np.full(len(names), np.inf)))
@@ -85,7 +83,7 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
     return UrdfChain(
         name=described.name,
         root=root or described.root,
-        tips=tips,
+        tips=solver.tip_names,
         joint_names=names,
         moves=moves,
         moving_links=tuple(joints[name].child for name in moves),

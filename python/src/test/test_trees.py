@@ -27,8 +27,14 @@ def test_tips_are_a_list_names_with_commas_or_a_star(tip) -> None:
 
 def test_a_list_of_one_tip_is_a_chain() -> None:
     chain = Solver(urdf=URDF, tip=["right_tool"])
-    assert chain.tip_names == ()
+    assert chain.tip_names == ("right_tool",)
     assert chain.tip == "right_tool"
+    chain.set_payload("load", 2.0, tip="right_tool")
+    wrench = np.arange(6.0)
+    np.testing.assert_array_equal(
+        chain.external_torques(np.zeros(5), wrench, tip="right_tool"),
+        chain.external_torques(np.zeros(5), wrench),
+    )
     assert chain.joint_names == ("lift_joint", "chest_joint", *JOINTS[1:4])
 
 

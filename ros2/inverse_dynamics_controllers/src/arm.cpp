@@ -140,16 +140,7 @@ FrictionSource frictionSource(const std::string& name) {
 
 }  // namespace
 
-std::string Setup::tip() const {
-  const std::vector<std::string>& tips = arm.solver->tipNames();
-  if (!tips.empty()) return tips.front();
-  rclcpp::Parameter tip;
-  if (!node->get_parameter("ids.tip", tip)) return "";
-  const std::string text = tip.get_type() == rclcpp::PARAMETER_STRING_ARRAY
-                               ? joined(tip.as_string_array())
-                               : tip.value_to_string();
-  return text == "*" ? "" : text;  // of a chain it names no link
-}
+std::string Setup::tip() const { return arm.solver->tipNames().front(); }
 
 ArmSource::ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node, Use use)
     : node_(std::move(node)),

@@ -39,7 +39,7 @@ struct Setup {
   double period;      ///< of the control loop [s]
   bool has_fallback;  ///< whether the manager starts other controllers when this one fails
 
-  /// The tip that the parameter `ids.tip` names, the first of several; empty: not set.
+  /// The solver's tip, the first of several; empty: its name isn't known.
   std::string tip() const;
 };
 

@@ -160,7 +160,7 @@ std::string NodeRobot::rootLink(const std::string& description) const {
 
 std::string NodeRobot::tipLink(const std::string& description,
                                const std::vector<std::string>& tips) const {
-  if (!tips.empty()) return tips.front();
+  if (!tips.empty() && !tips.front().empty()) return tips.front();
   std::string stated = statedLink("tip");
   if (stated == "*") stated.clear();  // of a chain, whose only leaf is meant
   const auto robot = stated.empty() ? described(description) : std::nullopt;

@@ -21,7 +21,7 @@ void InverseDynamicsSolverKDL::computeAccelerations(const ConstVectorRef& q,
                                                     const ConstVectorRef& qd,
                                                     const ConstVectorRef& tau,
                                                     VectorRef qdd) const {
-  if (!tipNames().empty()) return computeTreeAccelerations(q, qd, tau, qdd);
+  if (isTree()) return computeTreeAccelerations(q, qd, tau, qdd);
   // qdd holds the torques without friction until then
   computeFriction(q, qd, qdd);
   qdd = tau - qdd;

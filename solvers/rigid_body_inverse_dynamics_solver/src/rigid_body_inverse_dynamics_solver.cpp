@@ -219,6 +219,7 @@ auto InverseDynamicsSolverRigidBody::use(chain_dynamics::Model model,
   for (std::string& sentence : differences(configuration, model)) {
     warnings.push_back(std::move(sentence));
   }
+  if (model.branches.empty() && configuration.tip != "*") model.tip = configuration.tip;
   if (configuration.gravity_given) model = withGravity(model, configuration.gravity);
   if (!configuration.friction) model.friction.clear();
   return keep(std::move(model), configuration, std::move(warnings));
@@ -231,12 +232,10 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
   setSprings(configuration, model);
   const bool inertia_is_physical = model.inertiaIsPhysical();
   JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical),
-                 model.chain.jointTypes()};
+                 model.chain.jointTypes(), chain_dynamics::tipNames(model)};
   std::vector<std::unique_ptr<const RigidBodyTip>> other_tips;
   chain_dynamics::Model with_tip_first = model;
-  for (std::size_t i = 0; i < model.branches.size(); ++i) {
-    info.tip_names.push_back(model.branches[i].tip);
-    if (i == 0) continue;
+  for (std::size_t i = 1; i < model.branches.size(); ++i) {
     std::swap(with_tip_first.branches[0], with_tip_first.branches[i]);
     other_tips.push_back(std::make_unique<const RigidBodyTip>(*this, with_tip_first));
   }

@@ -493,7 +493,7 @@ TEST(Trees, OfOneTipAreTheChainBitForBit) {
   InverseDynamicsSolverRigidBody chain, list;
   initialized(chain, {{"tip", std::string("right_tool")}});
   initialized(list, {{"tip", Names{"right_tool"}}});
-  EXPECT_TRUE(list.tipNames().empty());
+  EXPECT_EQ(list.tipNames(), Names{"right_tool"});
   const Eigen::VectorXd q = ramp(5, -0.4, 0.3);
   EXPECT_EQ(chain.getTorques(q, q, q), list.getTorques(q, q, q));
   const chain_dynamics::Chain expected =
@@ -579,6 +579,38 @@ TEST(Trees, GiveKinematicsWrenchesAndPayloadsOfEachTip) {
                                 {"payload.mass", 2.0},
                                 {"payload.tip", std::string("right_tool")}});
   EXPECT_LE((with_parameters.getGravityVector(q) - bare - weight).norm(), 1e-12 * weight.norm());
+}
+
+TEST(Trees, NameTheirTipsAsChainsDo) {
+  InverseDynamicsSolverRigidBody chain;
+  initialized(chain, {{"tip", std::string("right_tool")}});
+  EXPECT_EQ(&chain.kinematicsOf("right_tool"), static_cast<const Kinematics*>(&chain));
+  EXPECT_EQ(&chain.externalWrenchAt("right_tool"),
+            static_cast<const inverse_dynamics_solver::ExternalWrench*>(&chain));
+  const Eigen::VectorXd q = ramp(5, -0.4, 0.3);
+  RigidBody part{2.0};
+  chain.setPayload("part", part);
+  const Eigen::VectorXd carried = chain.getGravityVector(q);
+  part.tip = "right_tool";
+  chain.setPayload("part", part);
+  EXPECT_EQ(chain.getGravityVector(q), carried);
+  part.tip = "left_tool";
+  expectContains(errorOf<Exception>([&] { chain.setPayload("part", part); }),
+                 {"tip", "one of right_tool", "'left_tool'"});
+  expectContains(errorOf<Exception>([&] { chain.kinematicsOf("left_tool"); }),
+                 {"one of right_tool", "'left_tool'"});
+}
+
+TEST(Trees, AndChainsHaveTipsByTheNamesThatAreKnown) {
+  InverseDynamicsSolverRigidBody solver;
+  initialized(solver, {}, textOf(robotsFile("urdf/ur10.urdf")));
+  EXPECT_EQ(solver.tipNames(), Names{"tool0"});
+  initialized(solver, {{"model", std::string(kUr10)}, {"tip", std::string("flange")}}, "");
+  EXPECT_EQ(solver.tipNames(), Names{"flange"});
+  initialized(solver, {{"model", std::string(kUr10)}}, "");
+  EXPECT_EQ(solver.tipNames(), Names{""});
+  EXPECT_EQ(&solver.kinematicsOf(""), static_cast<const Kinematics*>(&solver));
+  expectContains(errorOf<Exception>([&] { solver.kinematicsOf("tool0"); }), {"has no name"});
 }
 
 TEST(Trees, AddFrictionOfAFollowerToItsCoordinate) {

@@ -100,6 +100,9 @@ struct Mechanism {
   /// Empty: none. Otherwise rotor inertia of each coordinate that isn't among that of the branches; kg m^2
   /// (prismatic kg).
   std::vector<double> motor_inertia = {};
+
+  /// Without branches: name of the link whose frame is coordinates.tip(); empty: not known.
+  std::string tip = {};
 };
 
 /// Most coordinates; joints of one branch; joints, each counted once.

@@ -61,6 +61,7 @@ struct Model {
         motor_inertia(Eigen::Map<const Eigen::VectorXd>(
             mechanism.motor_inertia.data(),
             static_cast<Eigen::Index>(mechanism.motor_inertia.size()))),
+        tip(std::move(mechanism.tip)),
         name(chain.name()) {}
 
   Chain chain;
@@ -72,6 +73,9 @@ struct Model {
 
   /// Empty: none. Otherwise the mechanism's motor_inertia, which is on the diagonal of H.
   OwnedVector motor_inertia = {};
+
+  /// Without branches: name of the link whose frame is chain.tip(); empty: not known.
+  std::string tip = {};
 
   /// Empty: no springs. Otherwise, for each coordinate, the stiffness k of a spring [N m/rad; prismatic
   /// N/m] and the position at which it is at rest [rad; m]. Its torque `k (q - rest)` is part of
@@ -121,6 +125,9 @@ struct Model {
   /// model, but nobody should invert H or feed back through it.
   bool inertiaIsPhysical() const;
 };
+
+/// Names of the tips: those of the branches, or the chain's one, which is empty where it isn't known.
+std::vector<std::string> tipNames(const Model& model);
 
 /// Rejects a model whose parts don't fit together [also checkMechanism()]: wrong sizes, non-finite
 /// numbers, gains <= 0, coefficients that a friction law can't have.

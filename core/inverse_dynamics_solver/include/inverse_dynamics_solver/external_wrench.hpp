@@ -55,8 +55,8 @@ class ExternalWrench : public Capability {
  public:
   ~ExternalWrench() override;
 
-  /// That of another tip of a tree; until the next initialize(). Torques of several wrenches are sums of
-  /// those of each.
+  /// That of one of tipNames(); until the next initialize(). Torques of several wrenches are sums of those
+  /// of each.
   ///
   /// @throws UninitializedException; InvalidParameterValueException  none of tipNames().
   const ExternalWrench& externalWrenchAt(const std::string& tip) const {

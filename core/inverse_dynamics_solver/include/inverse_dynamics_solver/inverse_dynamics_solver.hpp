@@ -81,8 +81,8 @@ class InverseDynamicsSolver {
   /// description: the order of all vectors.
   const std::vector<std::string>& jointNames() const;
 
-  /// Links that are tips of a tree, in the order of the parameter `tip`: methods that name no tip are
-  /// about the first. Empty: a chain, which has one tip.
+  /// Links that are tips, in the order of the parameter `tip`: methods that name no tip are about the
+  /// first. A chain has one; its name is empty where a model file is the robot and `tip` isn't stated.
   const std::vector<std::string>& tipNames() const;
 
   /// How each of them moves. A driver may report a continuous joint within one turn: differences of
@@ -232,7 +232,7 @@ class InverseDynamicsSolver {
     std::vector<std::string> warnings;     ///< one sentence each
     /// n; empty: no joint is continuous, all count as revolute
     std::vector<chain_dynamics::JointType> joint_types = {};
-    std::vector<std::string> tip_names = {};  ///< of a tree
+    std::vector<std::string> tip_names = {};  ///< empty: one tip, without a name
   };
 
   /// Makes the solver ready for the robot that the configuration names.

@@ -28,7 +28,7 @@ class Kinematics : public Capability {
  public:
   ~Kinematics() override;
 
-  /// That of another tip of a tree; until the next initialize().
+  /// That of one of tipNames(); until the next initialize().
   ///
   /// @throws UninitializedException; InvalidParameterValueException  none of tipNames().
   const Kinematics& kinematicsOf(const std::string& tip) const {

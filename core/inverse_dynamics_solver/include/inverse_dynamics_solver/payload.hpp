@@ -39,7 +39,7 @@ struct RigidBody {
   /// Pose of the body's frame in the tip frame: the link `tip` of a URDF, `tip` of a model file.
   chain_dynamics::Transform<double> frame = chain_dynamics::Transform<double>::identity();
 
-  /// Which tip of a tree carries it; empty: the first.
+  /// Which of tipNames() carries it; empty: the first.
   std::string tip = {};
 };
 

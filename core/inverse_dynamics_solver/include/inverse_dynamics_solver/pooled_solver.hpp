@@ -115,6 +115,8 @@ class PooledSolver : public InverseDynamicsSolver, public ChangeableRobot<Pooled
 
   const InverseDynamicsSolver& torqueSolver() const override { return *this; }
 
+  bool isTree() const { return !bare_->branches.empty(); }
+
   /// Accelerations of a tree: solves `H qdd = tau - f - C qd - g`.
   void computeTreeAccelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
                                 const ConstVectorRef& tau, VectorRef qdd) const;
@@ -146,7 +148,7 @@ class PooledSolver : public InverseDynamicsSolver, public ChangeableRobot<Pooled
                                              std::size_t max_threads) const;
 
   std::unique_ptr<const chain_dynamics::Model> bare_;   // without payloads
-  std::vector<std::shared_ptr<const PooledTip>> tips_;  // of a tree
+  std::vector<std::shared_ptr<const PooledTip>> tips_;  // by tipNames()
   std::size_t max_threads_ = 0;
   std::vector<chain_dynamics::FrictionForm> friction_;  // empty: none; independent of load
   bool inertia_is_physical_ = false;

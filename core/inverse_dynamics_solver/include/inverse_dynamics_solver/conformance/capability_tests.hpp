@@ -157,7 +157,7 @@ TEST_P(SolverConformance, EachTipIsTheOneOfASolverWhoseFirstTipItIs) {
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Kinematics, kinematics);
   INVERSE_DYNAMICS_SOLVER_REQUIRE(ExternalWrench, contact);
   std::vector<std::string> tips = s.tipNames();
-  if (tips.empty()) GTEST_SKIP() << "a chain has one tip";
+  if (tips.front().empty()) GTEST_SKIP() << "the tip has no name";
   const Eigen::Index n = s.jointCount();
   for (const std::string& tip : s.tipNames()) {
     SCOPED_TRACE(tip);

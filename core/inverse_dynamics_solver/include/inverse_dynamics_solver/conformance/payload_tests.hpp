@@ -155,10 +155,10 @@ TEST_P(SolverConformance, NumbersDependOnTheBodiesThatAreThereAlone) {
   EXPECT_TRUE(identicalAll(now(), none));
 }
 
-/// The link that the last joint moves, in the description, or the first tip of a tree; empty without one.
+/// The first tip, or the link that the last joint moves, in the description; empty without one.
 inline std::string lastLink(const TestedSolver& tested, const InverseDynamicsSolver& solver) {
   if (tested.robotDescription().empty()) return "";
-  if (!solver.tipNames().empty()) return solver.tipNames().front();
+  if (!solver.tipNames().front().empty()) return solver.tipNames().front();
   try {
     const auto robot = chain_dynamics::robotFromUrdf(tested.robotDescription());
     return robot.links[robot.joints[robot.jointIndex(solver.jointNames().back())].child].name;
@@ -173,8 +173,8 @@ TEST_P(SolverConformance, BodyEqualsAFixedLinkOfTheDescription) {
   if (link.empty()) GTEST_SKIP() << "this solver needs no robot description";
   const std::vector<State> states = randomStates(kStates);
   ParameterMap parameters = GetParam().parameters();
-  const std::vector<std::string> tips = solver_->tipNames();
-  const ParameterValue tip = tips.empty() ? ParameterValue(link) : ParameterValue(tips);
+  std::vector<std::string> tip = solver_->tipNames();
+  tip.front() = link;
   parameters["tip"] = tip;
   const auto described = make();
   described->initialize(parameters, "", withToolAsLink(GetParam().robotDescription(), link));
