@@ -289,12 +289,16 @@ class LockedJoints {
       source = robot_.joints[source].mimic->joint;
       const bool endless = followers.size() > robot_.joints.size();
       if (endless || (onPath(source) && moves(source))) {
+        const std::string& leader = robot_.joints[source].name;
         throw ModelError(where(robot_.joints[followers.back()]), "<mimic>",
-                         "an attached joint that can be held",
+                         "a joint that can be held",
                          (endless ? "one that follows itself through joint "
                                   : "one that moves with the chain's joint ") +
-                             robot_.joints[source].name,
-                         "add a tip beyond it, ignore attached bodies, or make it fixed");
+                             leader,
+                         endless     ? "take a <mimic> out of the loop"
+                         : onPath(j) ? "hold joint " + leader + " at a position instead, or neither"
+                                     : "add a tip beyond it, ignore attached bodies, or make it "
+                                       "fixed");
       }
     }
     if (!position_[source]) position_[source] = givenPosition(source);

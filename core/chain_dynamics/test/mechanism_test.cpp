@@ -54,9 +54,9 @@ Names tipsOf(const Mechanism& mechanism) {
   return tips;
 }
 
-std::string errorOf(const std::string& urdf, const Names& tips) {
+std::string errorOf(const std::string& urdf, const Names& tips, const UrdfOptions& options = {}) {
   try {
-    mechanism(urdf, tips);
+    mechanism(urdf, tips, options);
   } catch (const ModelError& e) {
     return e.what();
   }
@@ -163,6 +163,13 @@ TEST(Mechanism, RefusesWhatItCannotBe) {
   EXPECT_THAT(errorOf(torso(), {"left", "base"}), HasSubstr("the same link"));
   EXPECT_THAT(errorOf(torso(mimic("left_arm", 1, 0)), {"right"}),
               AllOf(HasSubstr("right_arm"), HasSubstr("left_arm"), HasSubstr("add a tip")));
+  UrdfOptions held;
+  held.locked_position = [](const std::string& joint) {
+    return joint == "right_arm" ? std::optional<double>(0.3) : std::nullopt;
+  };
+  EXPECT_THAT(errorOf(torso(mimic("left_arm", 1, 0)), {"left", "right"}, held),
+              AllOf(HasSubstr("joint right_arm: <mimic>"), HasSubstr("moves with"),
+                    HasSubstr("hold joint left_arm at a position instead")));
   const std::string loop =
       torso(mimic("wrist", 1, 0),
             link("hand") + joint("wrist", "revolute", "right", "hand", mimic("right_arm", 1, 0)));

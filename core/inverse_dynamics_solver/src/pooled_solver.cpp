@@ -15,6 +15,7 @@
 #include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/model.hpp"
 #include "chain_dynamics/spatial.hpp"
+#include "chain_dynamics/text.hpp"
 #include "inverse_dynamics_solver/configuration.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "sum_of_chains.hpp"
@@ -65,7 +66,8 @@ auto PooledSolver::treeWorkspaceMaker(const chain_dynamics::Model& tree) const -
   throw InvalidParameterValueException(
       "parameter 'tip'", "wrong value",
       "one link, without joints that mimic others, as the solver computes chains",
-      std::to_string(tree.branches.size()) + " of robot " + tree.name,
+      (tree.branches.size() == 1 ? "a joint that mimics another, before " : "") +
+          chain_dynamics::joined(chain_dynamics::tipNames(tree)),
       "name another tip, or take rigid_body_inverse_dynamics_solver");
 }
 

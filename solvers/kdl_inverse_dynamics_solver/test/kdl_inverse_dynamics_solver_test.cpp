@@ -95,10 +95,22 @@ struct ChainsOnly : InverseDynamicsSolverKDL {
 TEST(PooledSolver, RefusesTreesByDefault) {
   using namespace inverse_dynamics_solver;  // NOLINT(google-build-using-namespace)
   ChainsOnly solver;
-  const std::string error = conformance::errorOf<InvalidParameterValueException>([&] {
-    solver.initialize({{"tip", "*"}}, "", twoArms());
-  });
-  EXPECT_TRUE(conformance::contains(error, {"'tip'", "one link", "3 of robot two_arms"})) << error;
+  const auto errorOf = [&solver](const char* tip, const std::string& urdf) {
+    return conformance::errorOf<InvalidParameterValueException>([&] {
+      solver.initialize({{"tip", tip}}, "", urdf);
+    });
+  };
+  const std::string several = errorOf("*", twoArms());
+  EXPECT_TRUE(conformance::contains(
+      several, {"'tip'", "one link", "got right_tool, left_finger, left_other_finger;"}))
+      << several;
+  std::string urdf = twoArms();
+  const std::string elbow = "<child link='right_elbow'/>";
+  ASSERT_NE(urdf.find(elbow), std::string::npos);
+  urdf.insert(urdf.find(elbow), "<mimic joint='right_shoulder_joint'/>");
+  const std::string one = errorOf("right_tool", urdf);
+  EXPECT_TRUE(conformance::contains(one, {"a joint that mimics another, before right_tool;"}))
+      << one;
   EXPECT_FALSE(solver.isInitialized());
   solver.initialize({{"tip", "right_tool"}}, "", twoArms());
   EXPECT_EQ(solver.jointCount(), 5);
