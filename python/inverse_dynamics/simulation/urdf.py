@@ -57,7 +57,8 @@ class UrdfChain:
 def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
     """The chain from link `root` to link `tip`, or the tree to several; as Solver() takes them.
 
-    Movable joints that don't lie between the two are locked at zero. Raises SimulationError.
+    Movable joints that don't lie between the two are locked at zero, or where they are by following those. Raises
+    SimulationError.
     """
     try:
         robot = parse_description(text)
@@ -72,6 +73,11 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
     joints = _joints_to(solver.tip_names, described)
     moves = positions_of(described, names)
     moves = {name: move for name, move in moves.items() if name in joints}
+    movable = {joint.name: joint for joint in described.joints if joint.type != "fixed"}
+    at_zero = positions_of(described, [n for n, joint in movable.items() if joint.mimic is None])
+    beside = {n: q for n, (*_, q) in at_zero.items() if q and n in movable and n not in moves}
+    if beside:
+        robot = parse_description(with_held_joints(text, beside))
 
     def limit(name: str) -> Floats:
         return np.asarray(stated.get(name, np.full(len(names), np.inf)))
@@ -95,7 +101,13 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
         jerk=limit("jerk"),
         damping=damping,
         friction=friction,
-        notes=_prepare_for_mujoco(robot, moves),
+        notes=(
+            *_prepare_for_mujoco(robot, moves),
+            *(
+                f"joint {name} is locked at {place:g}, as it mimics"
+                for name, place in beside.items()
+            ),
+        ),
         urdf=ElementTree.tostring(robot, encoding="unicode"),
     )
 
@@ -111,7 +123,7 @@ def _joints_to(tips: Sequence[str], robot: RobotDescription) -> dict[str, Descri
 
 
 def with_held_joints(text: str, positions: Mapping[str, float]) -> str:
-    """The description with joints fixed at positions [rad, m]. Raises SimulationError."""
+    """The description with joints, and those that mimic them, fixed at positions [rad, m]. Raises SimulationError."""
     if not positions:
         return text
     try:
@@ -123,6 +135,11 @@ def with_held_joints(text: str, positions: Mapping[str, float]) -> str:
         raise SimulationError(
             f"robot description: locked_joints: expected joints of the description, got {listed(unknown)}"
         )
+    values = [*positions.values()]
+    positions = {
+        name: factor * values[i] + offset
+        for name, (i, factor, offset) in positions_of(RobotDescription(text), [*positions]).items()
+    }
     for element in robot.findall("joint"):
         name = element.get("name", "")
         if name not in positions:
@@ -138,6 +155,8 @@ def with_held_joints(text: str, positions: Mapping[str, float]) -> str:
         origin.set("xyz", " ".join(map(repr, p.tolist())))
         origin.set("rpy", " ".join(map(repr, _roll_pitch_yaw(R))))
         element.set("type", "fixed")
+        for mimic in element.findall("mimic"):
+            element.remove(mimic)
     return ElementTree.tostring(robot, encoding="unicode")
 
 

@@ -25,6 +25,7 @@ from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.model import JointFriction, Payload, SimulatedRobot
 from inverse_dynamics.simulation.modelled import carried_by
 from inverse_dynamics.simulation.physics import drive
+from inverse_dynamics.simulation.urdf import with_held_joints
 
 if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
@@ -247,3 +248,13 @@ def test_payloads_at_other_tips_than_the_first_are_refused() -> None:
         SimulationError, match="expected all at the first tip, left_tool, got one at right_tool"
     ):
         carried_by(tree)
+
+
+def test_joints_that_mimic_held_ones_are_held_with_them() -> None:
+    held = {"left_finger_joint": -0.2}
+    tip = ",".join(two_arms.ARMS)
+    simulated = SimulatedRobot.from_urdf(with_held_joints(two_arms.URDF, held), tip=tip)
+    parameters = {f"locked_joints.{name}": q for name, q in held.items()}
+    tree = Solver(urdf=two_arms.URDF, tip=two_arms.ARMS, parameters=parameters)
+    states = two_arms.states(joints=len(tree.joint_names))
+    np.testing.assert_allclose(simulated.torques(*states), tree.torques(*states), rtol=0, atol=1e-9)
