@@ -28,6 +28,8 @@ from inverse_dynamics.simulation.urdf import UrdfChain, chain_from_urdf
 from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import mujoco
 
     from inverse_dynamics.arrays import Floats
@@ -50,14 +52,23 @@ _NEAR = 1e-7  # rad/s; slopes between closer velocities are rounding
 
 @dataclass(frozen=True)
 class Payload:
-    """A body fixed to the tip: kg; center of mass in the tip's frame, m.
+    """A body fixed to a tip: kg; center of mass in the tip's frame, m.
 
-    inertia: ixx ixy ixz iyy iyz izz, kg m^2 about the center of mass, along the axes of the tip's frame.
+    inertia: ixx ixy ixz iyy iyz izz, kg m^2 about the center of mass, along the axes of the tip's frame. tip: its link;
+    empty: the first.
     """
 
     mass: float
     center: tuple[float, float, float] = (0.0, 0.0, 0.0)
     inertia: tuple[float, ...] = (0.0,) * 6
+    tip: str = ""
+
+
+def payloads_of(given: Payload | Sequence[Payload] | None) -> tuple[Payload, ...]:
+    """One, several or none."""
+    if given is None:
+        return ()
+    return (given,) if isinstance(given, Payload) else tuple(given)
 
 
 @dataclass(frozen=True)
@@ -136,7 +147,7 @@ class SimulatedRobot:
         tip: str = "",
         *,
         gravity: Gravity = GRAVITY,
-        payload: Payload | None = None,
+        payload: Payload | Sequence[Payload] | None = None,
         friction: Friction | None = None,
         rotor_inertia: Floats | None = None,
     ) -> SimulatedRobot:
@@ -145,8 +156,8 @@ class SimulatedRobot:
         rotor_inertia: (n,) kg m^2 (prismatic kg), seen at the joint.
         """
         chain = chain_from_urdf(urdf, root, tip)
-        if payload is not None:
-            chain = _loaded(chain, payload)
+        for k, body in enumerate(payloads_of(payload)):
+            chain = _loaded(chain, body, f"ids_payload_{k}")
         spec, warnings = _read_spec(chain)
         chain = replace(chain, notes=(*chain.notes, *warnings))
         inertia = _inertia(spec)
@@ -247,21 +258,23 @@ def _massless(error: Exception, chain: UrdfChain, inertia: dict[str, Inertia]) -
     )
 
 
-def _loaded(chain: UrdfChain, payload: Payload) -> UrdfChain:
-    """The chain with a link without a volume, fixed to the tip."""
+def _loaded(chain: UrdfChain, payload: Payload, name: str) -> UrdfChain:
+    """The chain with a link without a volume, fixed to a tip."""
     if not (np.isfinite(payload.mass) and payload.mass > 0 and np.isfinite(payload.center).all()):
         raise SimulationError(
             "payload: expected a mass above zero [kg] and a finite center of mass [m], got "
             f"{payload.mass:g} kg at {', '.join(f'{x:g}' for x in payload.center)}"
         )
+    tip = payload.tip or chain.tips[0]
+    if tip not in chain.tips:
+        raise SimulationError(f"payload: tip: expected one of {listed(chain.tips)}, got {tip}")
     place = " ".join(repr(float(number)) for number in payload.center)
     names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     moments = " ".join(f'{k}="{float(v)!r}"' for k, v in zip(names, payload.inertia, strict=True))
     load = (
-        f'<link name="ids_payload"><inertial><origin xyz="{place}"/><mass value="{float(payload.mass)!r}"/>'
+        f'<link name="{name}"><inertial><origin xyz="{place}"/><mass value="{float(payload.mass)!r}"/>'
         f"<inertia {moments}/></inertial></link>"
-        f'<joint name="ids_payload" type="fixed"><parent link={quoteattr(chain.tips[0])}/>'
-        '<child link="ids_payload"/></joint>'
+        f'<joint name="{name}" type="fixed"><parent link={quoteattr(tip)}/><child link="{name}"/></joint>'
     )
     return replace(chain, urdf=chain.urdf.removesuffix("</robot>") + f"{load}</robot>")
 

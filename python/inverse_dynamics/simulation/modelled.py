@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -28,11 +28,13 @@ from inverse_dynamics.simulation.model import (
     JointFriction,
     Payload,
     SimulatedRobot,
+    payloads_of,
 )
 from inverse_dynamics.simulation.urdf import chain_from_urdf, with_held_joints
-from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from typing_extensions import Unpack
 
     from inverse_dynamics.arrays import Floats
@@ -79,17 +81,17 @@ def description_of(robot: Robot) -> str:
     return read_description(robot.urdf)
 
 
-def carried_by(solver: Solver) -> Payload | None:
-    """All payloads of a solver as one body. Raises SimulationError: bodies at other tips than the first."""
-    bodies = solver.payloads.values()
-    if others := {tip for body in bodies if (tip := body.get("tip", solver.tip)) != solver.tip}:
-        raise SimulationError(
-            f"payload: expected all at the first tip, {solver.tip}, got one at {listed(sorted(others))}; name its tip "
-            "first, or write the body into the description"
-        )
+def carried_by(solver: Solver) -> tuple[Payload, ...]:
+    """All payloads of a solver, those of each tip as one body."""
+    bodies: dict[str, list[dict[str, Any]]] = {}
+    for body in solver.payloads.values():
+        if body["mass"]:
+            bodies.setdefault(body.get("tip", ""), []).append(body)
+    return tuple(_as_one(of_tip, tip) for tip, of_tip in bodies.items())
+
+
+def _as_one(bodies: list[dict[str, Any]], tip: str) -> Payload:
     mass = sum(body["mass"] for body in bodies)
-    if not mass:
-        return None
     poses = [body["frame"] for body in bodies]
     centers = [
         (pose @ [*body["center_of_mass"], 1.0])[:3]
@@ -100,13 +102,13 @@ def carried_by(solver: Solver) -> Payload | None:
     for body, pose, place in zip(bodies, poses, centers, strict=True):
         R, d = pose[:3, :3], place - center
         inertia += R @ body["inertia"] @ R.T + body["mass"] * (d @ d * np.eye(3) - np.outer(d, d))
-    return Payload(mass, tuple(center.tolist()), tuple(inertia[np.triu_indices(3)].tolist()))
+    return Payload(mass, tuple(center.tolist()), tuple(inertia[np.triu_indices(3)].tolist()), tip)
 
 
 class PlantOptions(TypedDict, total=False):
     """What is simulated, beyond the robot's run configuration.
 
-    gravity: m/s^2, in the frame of the root link; None: the run configuration's. payload: at the tip; None: those of
+    gravity: m/s^2, in the frame of the root link; None: the run configuration's. payload: at tips; None: those of
     a Solver that is given as robot.
     joint_friction: the friction itself; a number: Coulomb friction that part of each joint's effort limit, and as much
     viscous friction at its velocity limit; "urdf": what <dynamics> says; "model": that of the run configuration's
@@ -115,7 +117,7 @@ class PlantOptions(TypedDict, total=False):
     """
 
     gravity: Gravity | None
-    payload: Payload | None
+    payload: Payload | Sequence[Payload] | None
     joint_friction: Friction | float | str | None
     from_model: bool
 
@@ -135,7 +137,7 @@ def simulated_robot(
         chain = chain_from_urdf(held, robot.root, robot.tip)
         solver = None
         if from_model or joint_friction == "model":
-            solver = _model_solver(robot, description, gravity, payload)
+            solver = _model_solver(robot, description, gravity, payloads_of(payload))
         friction = _friction(robot, chain, solver, joint_friction)
         urdf, rotor_inertia = held, None
         if from_model:
@@ -160,14 +162,15 @@ def simulated_robot(
 
 
 def _model_solver(
-    robot: Robot, description: str, gravity: Gravity, payload: Payload | None
+    robot: Robot, description: str, gravity: Gravity, payloads: Sequence[Payload]
 ) -> Solver:
     """The run configuration's solver, with friction, for a robot that is mounted and loaded like this."""
     solver = open_solver(replace(robot, friction=True), description)
     solver.set_gravity(gravity)
-    if payload is not None:
+    if payloads:
         solver.clear_payloads()
-        solver.set_payload("simulated payload", payload.mass, payload.center, payload.inertia)
+    for k, body in enumerate(payloads):
+        solver.set_payload(f"simulated {k}", body.mass, body.center, body.inertia, tip=body.tip)
     return solver
 
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import hashlib
 from contextlib import suppress
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass, is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -40,6 +40,7 @@ from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.controller import default_gains
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
+from inverse_dynamics.simulation.model import payloads_of
 from inverse_dynamics.simulation.modelled import (
     ModelFriction,
     PlantOptions,
@@ -62,7 +63,7 @@ from inverse_dynamics.simulation.trajectory import (
 from inverse_dynamics.wording import listed, told
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     import mujoco
     from typing_extensions import Unpack
@@ -70,7 +71,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.recordings.joint_log import Storage
-    from inverse_dynamics.simulation.model import Friction, SimulatedRobot
+    from inverse_dynamics.simulation.model import Friction, Payload, SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
     from inverse_dynamics.simulation.urdf import UrdfChain
 else:
@@ -246,7 +247,7 @@ def simulate(
         "duration": float(duration),
         "seed": seed,
         "trajectory": source,
-        "payload": _plain(plant.get("payload")),
+        "payload": _payloads(plant.get("payload"), chain),
         "links": links.name if links else None,
         "joint_friction": _friction_settings(robot, simulated.friction),
         **_plain(sensors),
@@ -332,6 +333,12 @@ def _friction_settings(robot: Robot, friction: Friction | None) -> Any:
     if isinstance(friction, ModelFriction):
         return {"model": robot.plugin if robot.model is None else robot.model.name}
     return _plain(friction)
+
+
+def _payloads(given: Payload | Sequence[Payload] | None, chain: UrdfChain) -> Any:
+    """What YAML can hold: one, or a list of several."""
+    bodies = [_plain(replace(body, tip=body.tip or chain.tips[0])) for body in payloads_of(given)]
+    return bodies if len(bodies) > 1 else next(iter(bodies), None)
 
 
 def _plain(thing: object) -> Any:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from inverse_dynamics.decimals import decimal
 from inverse_dynamics.recordings.joint_log import STORAGES
 from inverse_dynamics.terminal.options import Options, stated
 from inverse_dynamics.terminal.values import number, numbers, positive_number, whole_number
@@ -94,7 +95,13 @@ def _declare_motion(motion: Options) -> None:
 
 
 def _declare_robot(robot: Options) -> None:
-    robot.add("--payload KG[,X,Y,Z]", "point mass at the tip [kg; m]", _payload)
+    robot.add(
+        "--payload KG[,X,Y,Z][,TIP]",
+        "point mass at the tip [kg; m]; of a tree at the first, unless TIP names another one; may be "
+        "given several times",
+        _payload,
+        action="append",
+    )
     robot.add(
         "--joint-friction PART|urdf|model",
         "Coulomb friction as a share of each effort limit, and as much viscous friction at the "
@@ -219,9 +226,16 @@ def _lines(result: SimulatedRun, out: Path) -> list[Line]:
 def _payload(text: str) -> Payload:
     from inverse_dynamics.simulation.model import Payload
 
-    mass, *center = numbers(text, "1 or 4 numbers, separated by commas", 1, 4)
+    stated, _, tip = text.rpartition(",")
+    try:
+        decimal(tip)
+    except ValueError:
+        pass
+    else:
+        stated, tip = text, ""
+    mass, *center = numbers(stated or text, "1 or 4 numbers, separated by commas", 1, 4)
     x, y, z = center or (0.0, 0.0, 0.0)
-    return Payload(mass, (x, y, z))
+    return Payload(mass, (x, y, z), tip=tip)
 
 
 def _resolution(text: str) -> Resolution:

@@ -239,15 +239,21 @@ def test_joints_that_mimic_follow_in_simulation_too() -> None:
     assert response.q[-1, 8] > 0.05
 
 
-def test_payloads_at_other_tips_than_the_first_are_refused() -> None:
+def test_each_tip_carries_its_payloads() -> None:
     tree = Solver(urdf=two_arms.URDF, tip=two_arms.ARMS)
-    tree.set_payload("first", 1.0, tip="left_tool")
-    assert carried_by(tree).mass == 1.0
-    tree.set_payload("other", 1.0, tip="right_tool")
-    with pytest.raises(
-        SimulationError, match="expected all at the first tip, left_tool, got one at right_tool"
-    ):
-        carried_by(tree)
+    tree.set_payload("first", 1.0, [0.0, 0.1, 0.0])
+    tree.set_payload("other", 2.0, [0.0, 0.0, 0.2], tip="right_tool")
+    tree.set_payload("more", 3.0, inertia=np.eye(3), tip="right_tool")
+    found = carried_by(tree)
+    assert [(body.mass, body.tip) for body in found] == [(1.0, ""), (5.0, "right_tool")]
+    tip = ",".join(two_arms.ARMS)
+    simulated = SimulatedRobot.from_urdf(two_arms.URDF, tip=tip, payload=found)
+    states = two_arms.states(joints=len(tree.joint_names))
+    np.testing.assert_allclose(simulated.torques(*states), tree.torques(*states), rtol=0, atol=1e-9)
+    note = "joint left_other_finger_joint is locked at 0.1, as it mimics"
+    assert note in simulated.chain.notes
+    with pytest.raises(SimulationError, match="one of left_tool, right_tool, got left_finger"):
+        SimulatedRobot.from_urdf(two_arms.URDF, tip=tip, payload=Payload(1.0, tip="left_finger"))
 
 
 def test_joints_that_mimic_held_ones_are_held_with_them() -> None:

@@ -8,10 +8,12 @@ from functools import partial
 
 import numpy as np
 import pytest
+import two_arms
 import yaml
 from command_line import fails
 from simulation_arms import pendulum, two_links, write_robot
 
+from inverse_dynamics import Solver, evaluate
 from inverse_dynamics.excitation import excitation
 from inverse_dynamics.excitation.excitation import ExcitationOptions
 from inverse_dynamics.recordings.bags import read_joint_log
@@ -74,7 +76,7 @@ def test_all_options_arrive(made):
         "duration": 0.5,
         "seed": 4,
         "storage": "mcap",
-        "payload": {"mass": 0.5, "center": [0.1, 0.0, 0.2], "inertia": [0.0] * 6},
+        "payload": {"mass": 0.5, "center": [0.1, 0.0, 0.2], "inertia": [0.0] * 6, "tip": "arm"},
         "gravity": [-1, 0, -9],
         "noise": {"position": 1e-4, "velocity": 1e-3, "effort": 0.2},
         "quantisation": {"position": 1e-5, "velocity": 1e-4, "effort": 0.1},
@@ -113,7 +115,41 @@ def test_options_without_a_value_have_stated_defaults(made):
     assert settings["quantisation"] == {"position": 1e-5, "velocity": 1e-3, "effort": 0.01}
     assert settings["joint_friction"]["coulomb"] == [2.0]
     assert settings["gravity"] == [0, 0, 9.81]
-    assert settings["payload"] == {"mass": 1.0, "center": [0.0, 0.0, 0.0], "inertia": [0.0] * 6}
+    assert (settings["payload"]["mass"], settings["payload"]["center"]) == (1.0, [0.0, 0.0, 0.0])
+
+
+def test_payloads_of_two_tips_arrive(ids, tmp_path):
+    tree = Solver(urdf=two_arms.URDF, tip=two_arms.ARMS)
+    two_arms.written(tmp_path)
+    (tmp_path / "two_arms.yaml").write_text(
+        "schema: 1\nname: two_arms\ndescription: two arms\nurdf: two_arms.urdf\ntip: [left_tool, right_tool]\n"
+        "plugin: rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody\n"
+    )
+    n = len(tree.joint_names)
+    (tmp_path / "motion.yaml").write_text(
+        f"schema: 1\nkind: waypoints\njoints: [{', '.join(tree.joint_names)}]\ntimes: [0, 1, 2]\n"
+        f"positions: [{n * [0.0]}, {n * [0.2]}, {n * [0.0]}]\n"
+    )
+    options = "--rate 500 --no-table --payload 2,0,0,0.1 --payload 1,right_tool --out bag"
+    arm = ("--robot", "two_arms.yaml", "--trajectory", "motion.yaml")
+    code, out, err = ids("simulate", *arm, *options.split())
+    assert (code, err) == (0, ""), out
+    carried = yaml.safe_load((tmp_path / "bag/simulation.yaml").read_text())["payload"]
+    assert [(body["mass"], body["tip"]) for body in carried] == [
+        (2.0, "left_tool"),
+        (1.0, "right_tool"),
+    ]
+    parameters = {
+        "payload.left.mass": 2.0,
+        "payload.left.center_of_mass": [0.0, 0.0, 0.1],
+        "payload.right.mass": 1.0,
+        "payload.right.tip": "right_tool",
+    }
+    with_both = evaluate("bag", "two_arms.yaml", parameters=parameters)
+    assert with_both.mean_rmse < 0.02 * evaluate("bag", "two_arms.yaml").mean_rmse
+    code, _, err = ids("simulate", *arm, "--payload", "1,head", "--out", "other")
+    assert code == 2
+    assert "payload: tip: expected one of left_tool, right_tool, got head" in err
 
 
 @pytest.mark.parametrize(
