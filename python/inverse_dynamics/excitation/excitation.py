@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.progress import Progress
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory, WaypointTrajectory
+    from inverse_dynamics.simulation.urdf import UrdfChain
 
 WRIST = 3  # how many joints move for a payload
 
@@ -80,7 +81,7 @@ class ExcitationOptions:
     share: float = 0.8  # of the limits of position, velocity, acceleration, jerk and effort
     time_to_full_speed: float = 0.5  # s, what limits accelerations besides the URDF
     slow: float = 0.2  # share of the duration, for slow reversals; not for a payload
-    payload: bool = False  # whether a body at the tip is to be identified, instead of the arm
+    payload: bool = False  # whether a body at the first tip is to be identified, not the arm
     clearance: float = 0.01  # m, from itself and from the table
     table: bool = True
     iterations: int = 600
@@ -133,7 +134,8 @@ def optimise_excitation(
     limits = unknowns.limits
     moving = np.ones(len(limits.lower), dtype=bool)
     if options.payload:
-        moving[:-WRIST] = False
+        moving[:] = False
+        moving[_wrist(robot.chain)] = True
     family = MotionFamily.of(
         robot.chain.joint_names,
         limits,
@@ -159,6 +161,12 @@ def optimise_excitation(
         motion_gram(unknowns, trajectory),
         (*checker.notes, *_one_sided(unknowns, family, trajectory)),
     )
+
+
+def _wrist(chain: UrdfChain) -> list[int]:
+    """The last joints, or those that they mimic, before the first tip."""
+    ways = (chain.moves[name][0] for name in chain.joints_to(chain.tips[0]))
+    return list(dict.fromkeys(reversed([*ways])))[:WRIST]
 
 
 def minimise(

@@ -27,8 +27,6 @@ import numpy as np
 
 from inverse_dynamics._core import FastModel
 from inverse_dynamics.robots.link_parameters import inertia_matrix, pseudo_inertia
-from inverse_dynamics.simulation.errors import SimulationError
-from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,7 +36,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.simulation.limits import MotionLimits
     from inverse_dynamics.simulation.model import SimulatedRobot
-    from inverse_dynamics.simulation.urdf import UrdfChain
 
 PARAMETERS_PER_LINK = 10
 OWN = 7  # unknowns that belong to one joint: rotor, viscous, step, offset, load, width, shift
@@ -121,15 +118,16 @@ class Unknowns:
     ) -> Unknowns:
         """All parameters of an arm. noise: None: NOISE of each effort limit.
 
-        payload: the ten parameters of a body at the tip instead; what friction may have changed is a nuisance.
+        payload: the ten parameters of a body at the first tip instead; what friction may have changed is a nuisance.
         """
-        if payload:
-            _require_chain(robot.chain)
         model = engine_of(robot)
         links = model.parameters.reshape(-1, PARAMETERS_PER_LINK)
         total = max(float(links[:, 0].sum()), 1e-3)
+        first = 0
         if payload:
             bodies = [_PAYLOAD_SHARE * total * np.diag([*3 * [_PAYLOAD_RADIUS**2 / 5], 1.0])]
+            last_joint = robot.chain.joints_to(robot.chain.tips[0])[-1]
+            first = PARAMETERS_PER_LINK * model.link_joints.index(last_joint)
         else:
             bodies = [_pseudo_inertia(link, total) for link in links]
         own, inertial = _own_scales(limits), PARAMETERS_PER_LINK * len(bodies)
@@ -139,7 +137,7 @@ class Unknowns:
             scale[part, part] = _prior_scale(body)
         predicted = np.repeat([1.0, 0.0 if payload else 1.0], [inertial, len(own)])
         noise = NOISE * limits.effort if noise is None else noise
-        columns = slice(links.size - inertial, links.size)
+        columns = slice(first, first + inertial)
         return cls(model, limits, noise, columns, scale, predicted)
 
     def rows(self, q: Floats, qd: Floats, qdd: Floats) -> Floats:
@@ -236,14 +234,6 @@ class Unknowns:
         Z = self.rows(*states) * self.predicted
         variances = np.einsum("kjm,kjm->kj", Z @ V, Z)
         return np.asarray(np.sqrt(np.maximum(variances, 0.0)).mean(axis=0))
-
-
-def _require_chain(chain: UrdfChain) -> None:
-    if len(chain.tips) > 1 or len(chain.moves) > len(chain.joint_names):
-        raise SimulationError(
-            f"payload: expected a chain, got a tree with {counted(len(chain.tips), 'tip')}; name the one that "
-            "carries it as --tip"
-        )
 
 
 def _own_scales(limits: MotionLimits) -> Floats:

@@ -58,7 +58,8 @@ def declare(options: Options) -> None:
         default=[],
     )
     options.add(
-        "--payload", "a motion that identifies only the ten parameters of a body at the tip"
+        "--payload",
+        "a motion that identifies only the ten parameters of a body at the tip, of a tree at the first",
     )
     options.add(
         "--seed SEED", "seed of the search: the same seed gives the same motion", whole_number

@@ -38,7 +38,7 @@ class UrdfChain:
 
     name: str
     root: str
-    tips: tuple[str, ...]  # several of a tree; the first carries a payload
+    tips: tuple[str, ...]  # several of a tree; the first is meant where none is named
     joint_names: tuple[str, ...]
     moves: dict[str, tuple[int, float, float]]  # as positions_of() has it, of all joints that move
     moving_links: tuple[str, ...]  # the link right behind each of them
@@ -52,6 +52,11 @@ class UrdfChain:
     friction: Floats  # (n,) N m, stated in <dynamics>
     urdf: str  # joints beside the chain are locked, meshes are left out
     notes: tuple[str, ...]  # what was left out, in words
+
+    def joints_to(self, tip: str) -> tuple[str, ...]:
+        """Names of the joints that move a tip, from the root on."""
+        above = _joints_to((tip,), RobotDescription(self.urdf))
+        return tuple(name for name in reversed(above) if name in self.moves)
 
 
 def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:

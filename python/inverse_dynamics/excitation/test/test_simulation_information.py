@@ -10,6 +10,7 @@ import pytest
 import two_arms
 from simulation_arms import simulated, two_links
 
+from inverse_dynamics import Solver
 from inverse_dynamics.excitation import excitation as search
 from inverse_dynamics.excitation.excitation import ExcitationOptions
 from inverse_dynamics.excitation.excitation_motion import MotionFamily
@@ -23,7 +24,6 @@ from inverse_dynamics.excitation.information import (
 )
 from inverse_dynamics.robots.link_parameters import turned
 from inverse_dynamics.simulation.collision import ContactChecker
-from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.model import SimulatedRobot
 
 
@@ -191,5 +191,24 @@ def test_unknowns_of_a_tree_are_those_of_all_its_links() -> None:
     assert Z.shape == (20, 9, 10 * 10 + OWN * 9)
     np.testing.assert_allclose(tau, robot.torques(*states), rtol=0, atol=1e-9)
     np.testing.assert_allclose(Z[:, :, :100] @ unknowns.model.parameters, tau, rtol=0, atol=1e-9)
-    with pytest.raises(SimulationError, match="expected a chain, got a tree with 3 tips"):
-        ExcitationOptions(payload=True).unknowns(robot)
+
+
+@pytest.mark.parametrize("tip", [*two_arms.ARMS, "left_other_finger"])
+def test_a_payload_of_a_tree_is_at_its_first_tip(tip: str) -> None:
+    fingers = ("left_finger",) if tip == "left_other_finger" else ()  # which the other one follows
+    tips = list(dict.fromkeys((tip, *fingers, *two_arms.ARMS)))
+    robot = SimulatedRobot.from_urdf(two_arms.URDF, tip=",".join(tips))
+    unknowns = ExcitationOptions(payload=True).unknowns(robot)
+    states = unknowns.random_states(5)
+    solver = Solver(urdf=two_arms.URDF, tip=tips)
+    bare = solver.torques(*states)
+    solver.set_payload("load", 1.0, [0.1, 0.0, 0.2], inertia=0.01 * np.eye(3))
+    Z = unknowns.rows(*states)[:, :, :10]
+    load = np.linalg.lstsq(Z.reshape(-1, 10), (solver.torques(*states) - bare).ravel())[0]
+    np.testing.assert_allclose(Z @ load, solver.torques(*states) - bare, rtol=0, atol=1e-9)
+    assert load[0] == pytest.approx(1.0)
+    wrist = [robot.chain.joint_names[j] for j in search._wrist(robot.chain)]
+    side = tip.partition("_")[0]
+    last = ["left_finger_joint"] if tip.endswith("finger") else []
+    expected = [*last, f"{side}_hand_joint", f"{side}_elbow_joint", f"{side}_shoulder_joint"]
+    assert wrist == expected[:3]
