@@ -2,10 +2,12 @@
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
+import two_arms
 from example_evaluations import make_evaluation
 
-from inverse_dynamics import cli, write_evaluation
+from inverse_dynamics import Solver, cli, evaluate, write_evaluation
 from inverse_dynamics._core import Effort
 from inverse_dynamics.comparison.comparison import compare
 from inverse_dynamics.errors import UserError
@@ -84,3 +86,22 @@ def test_the_verb_calls_runs_as_the_user_does(tmp_path, evaluation, capsys):
     same = [str(tmp_path / name) for name in ("urdf", "other/urdf")]
     assert cli.main(["compare", *same]) == 0
     assert re.search(rf"joint +unit +{same[0]} +{same[1]}\n", capsys.readouterr().out)
+
+
+def test_runs_of_a_tree_are_compared_joint_by_joint(tmp_path, capsys):
+    tree = Solver(urdf=two_arms.URDF, tip=two_arms.ARMS)
+    table, file = two_arms.motion(tree, seconds=4.0), two_arms.written(tmp_path)
+    place = [0.05, 0.1, 0.05]
+    load = {"payload.mass": 2.0, "payload.center_of_mass": place, "payload.tip": "right_tool"}
+    runs = [
+        evaluate(table, urdf=file, tip=two_arms.ARMS, parameters=given) for given in (None, load)
+    ]
+    right, loaded = compare(runs).rmse
+    assert right.max() < 1e-3
+    carries = np.array([not name.startswith("left") for name in tree.joint_names])
+    assert (loaded[carries] > 0.1).all()
+    np.testing.assert_allclose(loaded[~carries], right[~carries], rtol=1e-6)
+    for name, run in zip(("bare", "loaded"), runs, strict=True):
+        write_evaluation(run, tmp_path / name, figures=())
+    assert cli.main(["compare", str(tmp_path / "bare"), str(tmp_path / "loaded")]) == 0
+    assert re.search(r"lift_joint +N +\d", capsys.readouterr().out)
