@@ -16,91 +16,44 @@
 namespace chain_dynamics {
 inline namespace v2 {
 namespace sums {
-namespace {
-
-// Of branches, whose number of joints is limited: on the stack.
-using BranchVector =
-    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostBranchJoints, 1>;
-using BranchMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
-                                   kMostBranchJoints, kMostBranchJoints>;
-
-/// `S x`: velocities of the joints of a branch, or accelerations.
-BranchVector motionOf(const Branch& branch, const ConstVectorRef& x) {
-  BranchVector result = BranchVector::Zero(branch.chain.jointCount());
-  addMotion(branch.S, x, result);
-  return result;
-}
-
-/// `S q + s`.
-BranchVector positionsOf(const Branch& branch, const ConstVectorRef& q) {
-  BranchVector result = Eigen::Map<const BranchVector>(branch.s.data(), branch.chain.jointCount());
-  addMotion(branch.S, q, result);
-  return result;
-}
-
-/// The sum over the branches of a vector, which `compute` gives of a branch with its positions.
-template <class Compute>
-void sumOfVectors(const Model& model, const ConstVectorRef& q, VectorRef result,
-                  const Compute& compute) {
-  BranchVector sum = BranchVector::Zero(result.size());
-  for (const Branch& branch : model.branches) {
-    BranchVector of_branch(branch.chain.jointCount());
-    compute(branch, positionsOf(branch, q), of_branch);
-    addTorques(branch.S, of_branch, sum);
-  }
-  result = sum;  // which may stand where an input does
-}
-
-/// The same of a matrix.
-template <class Compute>
-void sumOfMatrices(const Model& model, const ConstVectorRef& q, MatrixRef result,
-                   const Compute& compute) {
-  result.setZero();
-  for (const Branch& branch : model.branches) {
-    const Eigen::Index m = branch.chain.jointCount();
-    BranchMatrix of_branch(m, m);
-    compute(branch, positionsOf(branch, q), of_branch);
-    addMatrix(branch.S, of_branch, result);
-  }
-}
-
-}  // namespace
-
 void torques(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
              const ConstVectorRef& qdd, VectorRef tau) {
-  sumOfVectors(model, q, tau,
-               [&](const Branch& branch, const ConstVectorRef& q_b, VectorRef tau_b) {
-                 chain_dynamics::torques(branch.chain, internal::OwnParameters(), q_b,
-                                         ConstVectorRef(motionOf(branch, qd)),
-                                         ConstVectorRef(motionOf(branch, qdd)), tau_b);
-               });
+  sumOfVectors(model.branches, tau, [&](const Branch& branch, VectorRef tau_b) {
+    chain_dynamics::torques(
+        branch.chain, internal::OwnParameters(), ConstVectorRef(positionsOf(branch, q)),
+        ConstVectorRef(motionOf(branch, qd)), ConstVectorRef(motionOf(branch, qdd)), tau_b);
+  });
 }
 
 void inertiaMatrix(const Model& model, const ConstVectorRef& q, MatrixRef H) {
-  sumOfMatrices(model, q, H, [&](const Branch& branch, const ConstVectorRef& q_b, MatrixRef H_b) {
-    chain_dynamics::inertiaMatrix(branch.chain, internal::OwnParameters(), q_b, H_b);
+  sumOfMatrices(model.branches, H, [&](const Branch& branch, MatrixRef H_b) {
+    chain_dynamics::inertiaMatrix(branch.chain, internal::OwnParameters(),
+                                  ConstVectorRef(positionsOf(branch, q)), H_b);
   });
 }
 
 void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     VectorRef c) {
-  sumOfVectors(model, q, c, [&](const Branch& branch, const ConstVectorRef& q_b, VectorRef c_b) {
-    chain_dynamics::coriolisVector(branch.chain, internal::OwnParameters(), q_b,
+  sumOfVectors(model.branches, c, [&](const Branch& branch, VectorRef c_b) {
+    chain_dynamics::coriolisVector(branch.chain, internal::OwnParameters(),
+                                   ConstVectorRef(positionsOf(branch, q)),
                                    ConstVectorRef(motionOf(branch, qd)), c_b);
   });
 }
 
 void coriolisMatrix(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     MatrixRef C) {
-  sumOfMatrices(model, q, C, [&](const Branch& branch, const ConstVectorRef& q_b, MatrixRef C_b) {
-    chain_dynamics::coriolisMatrix(branch.chain, internal::OwnParameters(), q_b,
+  sumOfMatrices(model.branches, C, [&](const Branch& branch, MatrixRef C_b) {
+    chain_dynamics::coriolisMatrix(branch.chain, internal::OwnParameters(),
+                                   ConstVectorRef(positionsOf(branch, q)),
                                    ConstVectorRef(motionOf(branch, qd)), C_b);
   });
 }
 
 void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g) {
-  sumOfVectors(model, q, g, [&](const Branch& branch, const ConstVectorRef& q_b, VectorRef g_b) {
-    chain_dynamics::gravityVector(branch.chain, internal::OwnParameters(), q_b, g_b);
+  sumOfVectors(model.branches, g, [&](const Branch& branch, VectorRef g_b) {
+    chain_dynamics::gravityVector(branch.chain, internal::OwnParameters(),
+                                  ConstVectorRef(positionsOf(branch, q)), g_b);
   });
 }
 

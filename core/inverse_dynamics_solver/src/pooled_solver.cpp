@@ -77,13 +77,12 @@ auto PooledSolver::sumOfChains(const chain_dynamics::Model& tree) const -> Works
   for (const chain_dynamics::Branch& branch : tree.branches) {
     makers.push_back(workspaceMaker(branch.chain));
   }
-  const Eigen::Index n = tree.chain.jointCount();
-  return [n, branches = std::make_shared<const std::vector<chain_dynamics::Branch>>(tree.branches),
+  return [branches = std::make_shared<const std::vector<chain_dynamics::Branch>>(tree.branches),
           makers] {
     std::vector<std::unique_ptr<Workspace>> chains;
     chains.reserve(makers.size());
     for (const WorkspaceMaker& make : makers) chains.push_back(make());
-    return std::make_unique<SumOfChains>(n, branches, std::move(chains));
+    return std::make_unique<SumOfChains>(branches, std::move(chains));
   };
 }
 

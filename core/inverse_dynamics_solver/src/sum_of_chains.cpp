@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sum_of_chains.hpp"
 
+#include <Eigen/Core>
 #include <cstddef>
-#include <memory>
-#include <utility>
-#include <vector>
 
 #include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/spatial.hpp"
@@ -12,106 +10,72 @@
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
-using Eigen::MatrixXd, Eigen::VectorXd;
+using chain_dynamics::Branch;
+using chain_dynamics::motionOf;
+using chain_dynamics::positionsOf;
 
-SumOfChains::SumOfChains(Eigen::Index n,
-                         std::shared_ptr<const std::vector<chain_dynamics::Branch>> branches,
-                         std::vector<std::unique_ptr<Workspace>> chains)
-    : branches_(std::move(branches)), sum_(n) {
-  for (std::size_t b = 0; b < chains.size(); ++b) {
-    const chain_dynamics::Branch& branch = (*branches_)[b];
-    const Eigen::Index m = branch.chain.jointCount();
-    const VectorXd x = VectorXd::Zero(m);
-    parts_.push_back(
-        {branch, std::move(chains[b]), x, x, x, x, MatrixXd::Zero(m, m), MatrixXd::Zero(6, m)});
-  }
-}
+namespace {
 
-void SumOfChains::Part::setPositions(const ConstVectorRef& of_coordinates) {
-  q = Eigen::Map<const VectorXd>(branch.s.data(), q.size());
-  addMotion(branch.S, of_coordinates, q);
-}
+/// Of one branch.
+using BranchJacobian =
+    Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, chain_dynamics::kMostBranchJoints>;
 
-void SumOfChains::Part::setMotion(const ConstVectorRef& of_coordinates, VectorXd& of_joints) const {
-  of_joints.setZero();
-  addMotion(branch.S, of_coordinates, of_joints);
-}
+}  // namespace
 
 void SumOfChains::inertiaMatrix(const ConstVectorRef& q, MatrixRef H) {
-  H.setZero();
-  for (Part& part : parts_) {
-    part.setPositions(q);
-    part.chain->inertiaMatrix(part.q, part.H);
-    addMatrix(part.branch.S, part.H, H);
-  }
+  sumOfMatrices(*branches_, H, [&](const Branch& branch, MatrixRef H_b) {
+    of(branch).inertiaMatrix(positionsOf(branch, q), H_b);
+  });
 }
 
 void SumOfChains::coriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef c) {
-  sum_.setZero();
-  for (Part& part : parts_) {
-    part.setPositions(q);
-    part.setMotion(qd, part.qd);
-    part.chain->coriolisVector(part.q, part.qd, part.tau);
-    addTorques(part.branch.S, part.tau, sum_);
-  }
-  c = sum_;  // which may stand where an input does
+  sumOfVectors(*branches_, c, [&](const Branch& branch, VectorRef c_b) {
+    of(branch).coriolisVector(positionsOf(branch, q), motionOf(branch, qd), c_b);
+  });
 }
 
 void SumOfChains::gravityVector(const ConstVectorRef& q, VectorRef g) {
-  sum_.setZero();
-  for (Part& part : parts_) {
-    part.setPositions(q);
-    part.chain->gravityVector(part.q, part.tau);
-    addTorques(part.branch.S, part.tau, sum_);
-  }
-  g = sum_;
+  sumOfVectors(*branches_, g, [&](const Branch& branch, VectorRef g_b) {
+    of(branch).gravityVector(positionsOf(branch, q), g_b);
+  });
 }
 
 void SumOfChains::torques(const ConstVectorRef& q, const ConstVectorRef& qd,
                           const ConstVectorRef& qdd, VectorRef tau) {
-  sum_.setZero();
-  for (Part& part : parts_) {
-    part.setPositions(q);
-    part.setMotion(qd, part.qd);
-    part.setMotion(qdd, part.qdd);
-    part.chain->torques(part.q, part.qd, part.qdd, part.tau);
-    addTorques(part.branch.S, part.tau, sum_);
-  }
-  tau = sum_;
+  sumOfVectors(*branches_, tau, [&](const Branch& branch, VectorRef tau_b) {
+    of(branch).torques(positionsOf(branch, q), motionOf(branch, qd), motionOf(branch, qdd), tau_b);
+  });
 }
 
 void SumOfChains::tipPose(std::size_t tip, const ConstVectorRef& q,
                           chain_dynamics::Transform<double>& pose) {
-  Part& part = parts_[tip];
-  part.setPositions(q);
-  part.withTip().tipPose(0, part.q, pose);
+  withTip(tip).tipPose(0, positionsOf((*branches_)[tip], q), pose);
 }
 
 void SumOfChains::tipJacobian(std::size_t tip, const ConstVectorRef& q, MatrixRef J) {
-  Part& part = parts_[tip];
-  part.setPositions(q);
-  part.withTip().tipJacobian(0, part.q, part.J);
+  const Branch& branch = (*branches_)[tip];
+  BranchJacobian J_b(6, branch.chain.jointCount());
+  withTip(tip).tipJacobian(0, positionsOf(branch, q), J_b);
   J.setZero();
-  addJacobian(part.branch.S, part.J, J);
+  addJacobian(branch.S, J_b, J);
 }
 
 void SumOfChains::tipJacobianDerivative(std::size_t tip, const ConstVectorRef& q,
                                         const ConstVectorRef& qd, MatrixRef dJ) {
-  Part& part = parts_[tip];
-  part.setPositions(q);
-  part.setMotion(qd, part.qd);
-  part.withTip().tipJacobianDerivative(0, part.q, part.qd, part.J);
+  const Branch& branch = (*branches_)[tip];
+  BranchJacobian dJ_b(6, branch.chain.jointCount());
+  withTip(tip).tipJacobianDerivative(0, positionsOf(branch, q), motionOf(branch, qd), dJ_b);
   dJ.setZero();
-  addJacobian(part.branch.S, part.J, dJ);
+  addJacobian(branch.S, dJ_b, dJ);
 }
 
 void SumOfChains::externalTorques(std::size_t tip, const ConstVectorRef& q, WrenchFrame frame,
                                   const ConstVectorRef& wrench, VectorRef tau) {
-  Part& part = parts_[tip];
-  part.setPositions(q);
-  part.withTip().externalTorques(0, part.q, frame, wrench, part.tau);
+  const Branch& branch = (*branches_)[tip];
+  chain_dynamics::BranchVector tau_b(branch.chain.jointCount());
+  withTip(tip).externalTorques(0, positionsOf(branch, q), frame, wrench, tau_b);
   tau.setZero();
-  addTorques(part.branch.S, part.tau, tau);
+  addTorques(branch.S, tau_b, tau);
 }
 
 }  // namespace v2

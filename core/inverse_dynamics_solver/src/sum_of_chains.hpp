@@ -3,9 +3,9 @@
 /// A tree by workspaces of chains: the sums over its branches [chain_dynamics/mechanism.hpp].
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "chain_dynamics/mechanism.hpp"
@@ -20,10 +20,10 @@ inline namespace v2 {
 /// Workspaces of the branches, whose tips are computed where these are TipWorkspaces.
 class SumOfChains : public TipWorkspace {
  public:
-  /// @param n       number of coordinates.
   /// @param chains  one per branch.
-  SumOfChains(Eigen::Index n, std::shared_ptr<const std::vector<chain_dynamics::Branch>> branches,
-              std::vector<std::unique_ptr<Workspace>> chains);
+  SumOfChains(std::shared_ptr<const std::vector<chain_dynamics::Branch>> branches,
+              std::vector<std::unique_ptr<Workspace>> chains)
+      : branches_(std::move(branches)), chains_(std::move(chains)) {}
 
   void inertiaMatrix(const ConstVectorRef& q, MatrixRef H) override;
   void coriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef c) override;
@@ -39,21 +39,13 @@ class SumOfChains : public TipWorkspace {
                        const ConstVectorRef& wrench, VectorRef tau) override;
 
  private:
-  /// A branch with what its chain is given and gives.
-  struct Part {
-    const chain_dynamics::Branch& branch;
-    std::unique_ptr<Workspace> chain;
-    Eigen::VectorXd q, qd, qdd, tau;
-    Eigen::MatrixXd H, J;
-
-    TipWorkspace& withTip() const { return static_cast<TipWorkspace&>(*chain); }
-    void setPositions(const ConstVectorRef& of_coordinates);
-    void setMotion(const ConstVectorRef& of_coordinates, Eigen::VectorXd& of_joints) const;
-  };
+  Workspace& of(const chain_dynamics::Branch& branch) const {
+    return *chains_[static_cast<std::size_t>(&branch - branches_->data())];
+  }
+  TipWorkspace& withTip(std::size_t tip) const { return static_cast<TipWorkspace&>(*chains_[tip]); }
 
   std::shared_ptr<const std::vector<chain_dynamics::Branch>> branches_;
-  std::vector<Part> parts_;
-  Eigen::VectorXd sum_;
+  std::vector<std::unique_ptr<Workspace>> chains_;
 };
 
 }  // namespace v2

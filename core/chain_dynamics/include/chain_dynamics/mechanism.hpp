@@ -87,6 +87,62 @@ struct Branch {
   std::vector<Eigen::Index> link;  ///< of its joints: number of the link that each moves, from 0
 };
 
+/// Most coordinates; joints of one branch; joints, each counted once.
+constexpr std::size_t kMostCoordinates = 64;
+constexpr std::size_t kMostBranchJoints = 64;
+constexpr std::size_t kMostMovingJoints = 128;
+
+/// @name What branches compute, and its sum
+/// On the stack. Real time: no allocation, lock, exception or system call.
+/// @{
+
+/// Of the joints of a branch, or of coordinates.
+using BranchVector =
+    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostBranchJoints, 1>;
+using BranchMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                                   kMostBranchJoints, kMostBranchJoints>;
+
+/// `S x`: velocities of the joints of a branch, or accelerations.
+inline BranchVector motionOf(const Branch& branch, const Eigen::Ref<const Eigen::VectorXd>& x) {
+  BranchVector result = BranchVector::Zero(branch.chain.jointCount());
+  addMotion(branch.S, x, result);
+  return result;
+}
+
+/// `S q + s`.
+inline BranchVector positionsOf(const Branch& branch, const Eigen::Ref<const Eigen::VectorXd>& q) {
+  BranchVector result = Eigen::Map<const BranchVector>(branch.s.data(), branch.chain.jointCount());
+  addMotion(branch.S, q, result);
+  return result;
+}
+
+/// `sum of S' v`, of vectors that `compute(branch, v)` gives; the sum may stand where an input does.
+template <class Compute>
+void sumOfVectors(const std::vector<Branch>& branches, Eigen::Ref<Eigen::VectorXd> result,
+                  const Compute& compute) {
+  BranchVector sum = BranchVector::Zero(result.size());
+  for (const Branch& branch : branches) {
+    BranchVector of_branch(branch.chain.jointCount());
+    compute(branch, of_branch);
+    addTorques(branch.S, of_branch, sum);
+  }
+  result = sum;
+}
+
+/// `sum of S' A S`, of matrices that `compute(branch, A)` gives.
+template <class Compute>
+void sumOfMatrices(const std::vector<Branch>& branches, Eigen::Ref<Eigen::MatrixXd> result,
+                   const Compute& compute) {
+  result.setZero();
+  for (const Branch& branch : branches) {
+    const Eigen::Index m = branch.chain.jointCount();
+    BranchMatrix of_branch(m, m);
+    compute(branch, of_branch);
+    addMatrix(branch.S, of_branch, result);
+  }
+}
+/// @}
+
 /// Coordinates, and the branches whose joints follow them.
 struct Mechanism {
   /// One joint per coordinate, with name, type and limits; its rotor inertia, damping and friction are
@@ -104,11 +160,6 @@ struct Mechanism {
   /// Without branches: name of the link whose frame is coordinates.tip(); empty: not known.
   std::string tip = {};
 };
-
-/// Most coordinates; joints of one branch; joints, each counted once.
-constexpr std::size_t kMostCoordinates = 64;
-constexpr std::size_t kMostBranchJoints = 64;
-constexpr std::size_t kMostMovingJoints = 128;
 
 /// Number of links of all branches, each counted once.
 Eigen::Index linkCount(const std::vector<Branch>& branches);
