@@ -9,6 +9,7 @@
 #include <pinocchio/algorithm/rnea.hpp>
 #include <string>
 
+#include "described_tree.hpp"
 #include "peers.hpp"
 #include "pinocchio_model.hpp"
 #include "robots.hpp"

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pinocchio_model.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/mechanism.hpp>
-#include <chain_dynamics/robot_description.hpp>
 #include <chain_dynamics/spatial.hpp>
 #include <cstddef>
 #include <vector>
@@ -95,43 +93,6 @@ Models toPinocchio(const std::vector<chain_dynamics::Branch>& branches) {
   result.without_gravity = model;
   result.without_gravity.gravity.setZero();
   return result;
-}
-
-Model toPinocchio(const chain_dynamics::RobotDescription& robot) {
-  using chain_dynamics::RobotDescription;
-  Model model;
-  model.name = robot.name;
-  model.gravity.setZero();
-  // of each link: the joint that moves it, and its pose in that joint's frame
-  std::vector<pinocchio::JointIndex> moved(robot.links.size(), 0);
-  std::vector<pinocchio::SE3> pose(robot.links.size(), pinocchio::SE3::Identity());
-  for (const std::size_t i : robot.linksBelow(robot.root)) {
-    const RobotDescription::Link& link = robot.links[i];
-    if (link.parent_joint != RobotDescription::kNone) {
-      const RobotDescription::Joint& joint = robot.joints[link.parent_joint];
-      moved[i] = moved[joint.parent];
-      pose[i] = pose[joint.parent] * placed(joint.placement);
-      if (isMovable(joint)) {
-        const Eigen::Quaterniond to_axis =
-            Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis);
-        const pinocchio::SE3 turned(to_axis.toRotationMatrix(), Eigen::Vector3d::Zero());
-        const pinocchio::SE3 X = pose[i] * turned;
-        moved[i] =
-            joint.type == RobotDescription::JointType::kPrismatic
-                ? model.addJoint(moved[i], Model::JointCollection::Prismatic(), X, joint.name)
-                : model.addJoint(moved[i], Model::JointCollection::Revolute(), X, joint.name);
-        pose[i] = turned.inverse();
-      }
-    }
-    if (link.inertial) {
-      model.appendBodyToJoint(
-          moved[i],
-          pinocchio::Inertia(link.inertial->mass, Eigen::Vector3d::Zero(), link.inertial->inertia),
-          pose[i] * placed(link.inertial->placement));
-    }
-    model.addFrame(Model::Frame(link.name, moved[i], pose[i], pinocchio::OP_FRAME));
-  }
-  return model;
 }
 
 }  // namespace v2

@@ -8,7 +8,6 @@
 
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/mechanism.hpp"
-#include "chain_dynamics/robot_description.hpp"
 #include "pinocchio_headers.hpp"
 
 namespace pinocchio_inverse_dynamics_solver {
@@ -33,10 +32,6 @@ struct Models {
 /// The models of a tree, in which each joint is once. Their frames are those of the tips, after Pinocchio's
 /// own.
 Models toPinocchio(const std::vector<chain_dynamics::Branch>& branches);
-
-/// The model of all joints of a robot description, for tests and benchmarks: those that move, parents
-/// first, by their names, whatever they mimic; a frame for each link, by its name. Gravity is zero.
-Model toPinocchio(const chain_dynamics::RobotDescription& robot);
 
 }  // namespace v2
 }  // namespace pinocchio_inverse_dynamics_solver

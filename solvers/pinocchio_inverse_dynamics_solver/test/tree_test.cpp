@@ -41,6 +41,7 @@
 #include <utility>
 #include <vector>
 
+#include "described_tree.hpp"
 #include "pinocchio_model.hpp"
 #include "pinocchio_workspace.hpp"
 
