@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/spatial.hpp>
 #include <cstddef>
@@ -20,6 +21,7 @@ namespace {
 
 using chain_dynamics::FastModel;
 using chain_dynamics::Transform;
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, FastModel::kMaxJoints>;
 
 /// The six numbers of a wrench in the axes of the root frame.
 Eigen::Matrix<double, 6, 1> inRootAxes(const Eigen::Matrix3d& R, const ConstVectorRef& wrench) {
@@ -36,7 +38,7 @@ void wrenchTorques(const FastModel& fast, const ConstVectorRef& q, WrenchFrame f
     fast.tipPose(q.data(), pose.R.data(), pose.p.data());
     w = inRootAxes(pose.R, wrench);
   }
-  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, FastModel::kMaxJoints> J(6, q.size());
+  Jacobian J(6, q.size());
   fast.tipJacobian(q.data(), J.data(), 6);
   tau.noalias() = J.transpose().lazyProduct(w);
 }
@@ -53,9 +55,32 @@ auto RigidBodyTip::externalWrenchAtTip(std::size_t tip) const
   return dynamic_cast<const ExternalWrench&>(solver_).externalWrenchAt(solver_.tipNames()[tip]);
 }
 
+void RigidBodyTip::computeTipPose(const ConstVectorRef& q, Transform<double>& pose) const {
+  fast_.tipPose(positionsOf(branch_, q).data(), pose.R.data(), pose.p.data());
+}
+
+void RigidBodyTip::computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const {
+  Jacobian of_branch(6, branch_.chain.jointCount());
+  fast_.tipJacobian(positionsOf(branch_, q).data(), of_branch.data(), 6);
+  J.setZero();
+  addJacobian(branch_.S, of_branch, J);
+}
+
+void RigidBodyTip::computeTipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                                MatrixRef dJ) const {
+  Jacobian of_branch(6, branch_.chain.jointCount());
+  fast_.tipJacobianDerivative(positionsOf(branch_, q).data(), motionOf(branch_, qd).data(),
+                              of_branch.data(), 6);
+  dJ.setZero();
+  addJacobian(branch_.S, of_branch, dJ);
+}
+
 void RigidBodyTip::computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
                                           const ConstVectorRef& wrench, VectorRef tau) const {
-  wrenchTorques(fast_, q, frame, wrench, tau);
+  chain_dynamics::BranchVector of_branch(branch_.chain.jointCount());
+  wrenchTorques(fast_, positionsOf(branch_, q), frame, wrench, of_branch);
+  tau.setZero();
+  addTorques(branch_.S, of_branch, tau);
 }
 
 void InverseDynamicsSolverRigidBody::computeExternalTorques(const ConstVectorRef& q,

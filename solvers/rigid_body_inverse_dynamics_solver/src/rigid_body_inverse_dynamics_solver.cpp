@@ -234,10 +234,8 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
   JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical),
                  model.chain.jointTypes(), chain_dynamics::tipNames(model)};
   std::vector<std::unique_ptr<const RigidBodyTip>> other_tips;
-  chain_dynamics::Model with_tip_first = model;
   for (std::size_t i = 1; i < model.branches.size(); ++i) {
-    std::swap(with_tip_first.branches[0], with_tip_first.branches[i]);
-    other_tips.push_back(std::make_unique<const RigidBodyTip>(*this, with_tip_first));
+    other_tips.push_back(std::make_unique<const RigidBodyTip>(*this, model.branches[i]));
   }
   for (std::string& warning : warnings) info.warnings.push_back(std::move(warning));
   auto conditions = readConditions(configuration, model.chain.gravity());

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "chain_dynamics/fast_model.hpp"
+#include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/model.hpp"
 #include "chain_dynamics/spatial.hpp"
 #include "chain_dynamics/states.hpp"
@@ -57,14 +58,13 @@ struct ReadyModel {
   chain_dynamics::FastModel fast;
 };
 
-/// Kinematics and wrenches of one tip of a tree, and the torques of the solver.
+/// Kinematics and wrenches of one tip of a tree, by its branch, and the torques of the solver.
 class RigidBodyTip : public inverse_dynamics_solver::Kinematics,
                      public inverse_dynamics_solver::ExternalWrench {
  public:
-  /// @param with_tip_first  the tree with this tip's branch before all others.
   RigidBodyTip(const inverse_dynamics_solver::InverseDynamicsSolver& solver,
-               const chain_dynamics::Model& with_tip_first)
-      : solver_(solver), fast_(with_tip_first) {}
+               chain_dynamics::Branch branch)
+      : solver_(solver), branch_(std::move(branch)), fast_(chain_dynamics::Model(branch_.chain)) {}
 
  protected:
   const inverse_dynamics_solver::InverseDynamicsSolver& torqueSolver() const override {
@@ -74,22 +74,17 @@ class RigidBodyTip : public inverse_dynamics_solver::Kinematics,
   const inverse_dynamics_solver::ExternalWrench& externalWrenchAtTip(
       std::size_t tip) const override;
   void computeTipPose(const ConstVectorRef& q,
-                      chain_dynamics::Transform<double>& pose) const override {
-    fast_.tipPose(q.data(), pose.R.data(), pose.p.data());
-  }
-  void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const override {
-    fast_.tipJacobian(q.data(), J.data(), J.outerStride());
-  }
+                      chain_dynamics::Transform<double>& pose) const override;
+  void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const override;
   void computeTipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                    MatrixRef dJ) const override {
-    fast_.tipJacobianDerivative(q.data(), qd.data(), dJ.data(), dJ.outerStride());
-  }
+                                    MatrixRef dJ) const override;
   void computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
                               const ConstVectorRef& wrench, VectorRef tau) const override;
 
  private:
   const inverse_dynamics_solver::InverseDynamicsSolver& solver_;
-  chain_dynamics::FastModel fast_;
+  chain_dynamics::Branch branch_;
+  chain_dynamics::FastModel fast_;  // of the branch's chain
 };
 
 /// The engine as a solver.
