@@ -354,6 +354,14 @@ std::ptrdiff_t blockStates(const Robot& robot) {
   return std::min<std::ptrdiff_t>(kBlockStates, kBlockNumbers / most / 8 * 8);
 }
 
+/// The same where a matrix of each state takes room, too.
+std::ptrdiff_t matrixStates(const Robot& robot) {
+  Index most = 1;
+  for (const FastBranch& b : branchesOf(robot).branches) most = std::max(most, jointsOf(b));
+  const std::ptrdiff_t fitting = kMost * kMost / (most * most);
+  return std::min(blockStates(robot), fitting < 8 ? fitting : fitting / 8 * 8);
+}
+
 /// The states of a block of numbers, which don't stand in caller's memory.
 States statesOf(Block& block, Index joints, Index count, std::ptrdiff_t step) {
   return {block.numbers, joints, count, step, 1};
@@ -543,26 +551,49 @@ void write(const double* columns, Index rows, Index count, const Matrices& to) {
   }
 }
 
-void inertiaMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Matrices H) {
-  Numbers q_k{};
-  for (std::ptrdiff_t k = 0; k < states; ++k) {
-    inertia(robot, structure, stateOf(q, robot.joints, k, q_k), ofState(H, k));
+/// H of all states and, where they aren't null, c and g. In one pass, by as many states as leave room for
+/// their matrices.
+void componentsMany(const Robot& robot, int /*structure*/, std::ptrdiff_t states, Samples q,
+                    Samples qd, Matrices H, Samples c, Samples g) {
+  const FastBranches& all = branchesOf(robot);
+  const Index n = robot.joints;
+  const bool all_terms = c.data != nullptr;
+  const std::ptrdiff_t size = matrixStates(robot);
+  Block q_b, qd_b, c_b, g_b, sum_c, sum_g;  // c and g may stand where inputs do
+  double H_b[kMost * kMost];
+  for (std::ptrdiff_t first = 0; first < states; first += size) {
+    const std::ptrdiff_t count = std::min(size, states - first);
+    const States c_all = statesOf(sum_c, n, count, size), g_all = statesOf(sum_g, n, count, size);
+    for (Index k = 0; k < count; ++k) setZero(ofState(H, first + k), n, n);
+    setZero(c_all);
+    setZero(g_all);
+    addProducts(all.model->stiffness, q, &all.model->rest, first, g_all);
+    for (const FastBranch& b : all.branches) {
+      const Index m = jointsOf(b);
+      const ConstStates x = motionOf(b, q, first, count, size, true, q_b);
+      const StridedMatrices of_branch(H_b, m, m, count, 1, m, m * m);
+      if (all_terms) {
+        const ConstStates v = motionOf(b, qd, first, count, size, false, qd_b);
+        const States c_of = statesOf(c_b, m, count, size), g_of = statesOf(g_b, m, count, size);
+        b.fast->dynamicComponentsBatch(x, v, of_branch, c_of, g_of);
+        add(b, c_of, c_all);
+        add(b, g_of, g_all);
+      } else {
+        b.fast->inertiaMatrixBatch(x, of_branch);
+      }
+      for (Index k = 0; k < count; ++k) addMatrix(b, H_b + k * m * m, ofState(H, first + k));
+    }
+    for (Index k = 0; k < count; ++k) {
+      addToDiagonal(all.model->motor_inertia, ofState(H, first + k));
+    }
+    if (!all_terms) continue;
+    write(c_all, c, first);
+    write(g_all, g, first);
   }
 }
 
-void componentsMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Samples qd,
-                    Matrices H, Samples c, Samples g) {
-  if (H.data != nullptr) inertiaMany(robot, structure, states, q, H);
-  const std::ptrdiff_t size = blockStates(robot);
-  Block of_coriolis, of_gravity;  // c and g may stand where inputs do
-  for (std::ptrdiff_t first = 0; first < states; first += size) {
-    const std::ptrdiff_t count = std::min(size, states - first);
-    coriolisMany(robot, structure, count, from(q, first), from(qd, first),
-                 {of_coriolis.numbers, size, 1});
-    gravityMany(robot, structure, count, from(q, first), {of_gravity.numbers, size, 1});
-    write(statesOf(of_coriolis, robot.joints, count, size), c, first);
-    write(statesOf(of_gravity, robot.joints, count, size), g, first);
-  }
+void inertiaMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Matrices H) {
+  componentsMany(robot, structure, states, q, {}, H, {}, {});
 }
 
 void forwardDynamicsMany(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,

@@ -56,6 +56,12 @@ void requireLinks(const fast::Robot& robot, Index joint, const std::vector<int>&
                    "others", "make it by emptyGram()");
 }
 
+/// Whether kernels for many states compute H: of short chains, and of trees.
+bool packsMatrices(const fast::Robot& robot) {
+  return robot.joints <= fast::kPackedMatrixJoints ||
+         !static_cast<const FastBranches&>(robot).branches.empty();
+}
+
 }  // namespace
 
 void FastModel::torquesBatch(ConstStates q, ConstStates qd, ConstStates qdd, States tau) const {
@@ -63,7 +69,7 @@ void FastModel::torquesBatch(ConstStates q, ConstStates qd, ConstStates qdd, Sta
 }
 
 void FastModel::inertiaMatrixBatch(ConstStates q, StridedMatrices H) const {
-  if (robot().joints <= fast::kPackedMatrixJoints) {
+  if (packsMatrices(robot())) {
     many_->inertia(robot(), structure_, q.count, samples(q), matrices(H));
     return;
   }
@@ -87,7 +93,7 @@ void FastModel::frictionVectorBatch(ConstStates q, ConstStates qd, States f) con
 
 void FastModel::dynamicComponentsBatch(ConstStates q, ConstStates qd, StridedMatrices H, States c,
                                        States g) const {
-  const bool packed = robot().joints <= fast::kPackedMatrixJoints;
+  const bool packed = packsMatrices(robot());
   if (!packed) inertiaMatrixBatch(q, H);  // first: c and g may stand where q does
   const fast::Matrices to = packed ? matrices(H) : fast::Matrices{};
   many_->components(robot(), structure_, q.count, samples(q), samples(qd), to, samples(c),
