@@ -200,10 +200,9 @@ def test_a_fault_of_the_robot_is_told_once(ids, bags, tmp_path):
     assert os.listdir(tmp_path) == []
 
 
-def reader_of(fifo, parent):
-    """The worker that waits for a FIFO, once it does."""
-    deadline = time.monotonic() + 60
-    while time.monotonic() < deadline:
+def reader_of(fifo, process):
+    """The worker of a process that waits for a FIFO, once it does."""
+    while process.poll() is None:
         for place in Path("/proc").glob("[0-9]*"):
             try:
                 status = (place / "status").read_text()
@@ -211,10 +210,10 @@ def reader_of(fifo, parent):
                 waits = "fifo" in (place / "wchan").read_text() or fifo_is_open(place, fifo)
             except OSError:
                 continue
-            if f"PPid:\t{parent}\n" in status and "workers import serve" in command and waits:
+            if f"PPid:\t{process.pid}\n" in status and "workers import serve" in command and waits:
                 return int(place.name)
         time.sleep(0.02)
-    raise AssertionError("no worker reads the FIFO")
+    raise AssertionError("it ended before a worker read the FIFO")
 
 
 def fifo_is_open(place, fifo):
@@ -235,11 +234,9 @@ def test_a_signal_ends_all_workers_and_leaves_nothing(bags, tmp_path, number):
                "sys.exit(main())", "evaluate", str(bags), str(stuck), *ROBOT, *NO_FIGURE,
                "--out", "week", "--jobs", "2"]  # fmt: skip
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
-        worker = reader_of(stuck, process.pid)
+        worker = reader_of(stuck, process)
         process.send_signal(number)
-        start = time.monotonic()
-        _, err = process.communicate(timeout=60)
-        assert time.monotonic() - start < 30
+        _, err = process.communicate()  # forever, if it waits for a worker
     os.close(writer)
     assert process.returncode == 128 + number
     assert err.endswith("; nothing was written\n")
