@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Models of other people's robots, tested on another day, motion or robot than they are fitted to.
 
-The first argument is a directory of clones of these repositories; what is missing is named, and then nothing is
-replaced:
-
-    https://github.com/shamilmamedov/dynamic_calibration
-    https://github.com/JonasWeigand/Robot_Identification
-    https://github.com/marcocognetti/FrankaEmikaPandaDynModel
+The first argument is a directory of clones of the repositories that public_arms names; those missing are named.
 
 All is what `ids identify` and `ids evaluate` do by default.
 """
@@ -14,18 +9,18 @@ All is what `ids identify` and `ids evaluate` do by default.
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+from public_arms import ARMS, missing_clones
 from studies import recording_of, show, table
 
 from inverse_dynamics import _core, evaluate, identify, load_robot
 from inverse_dynamics.identification.files import write_identification
 from inverse_dynamics.robots.descriptions import read_description
-from inverse_dynamics.robots.robots import robot_of_description
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -51,96 +46,21 @@ HEADINGS = (
 )
 SQUARES = ("ordinary", "weighted", "consistent")
 
-# of the first three joints of a KUKA KR300; kg about, as published
-KR300_GEARS = (1798 / 7, 1872 / 7, 757 / 3)
-KR300_TABLE = """\
-convention: modified
-degrees: true
-joints:
-  - {a: 0, alpha: 0, d: -0.675, mass: 395}
-  - {a: 0.35, alpha: 90, d: -0.189, mass: 339}
-  - {a: 1.15, alpha: 0, d: 0.189, mass: 192}
-"""
+ONE, TWO, POINTS = "12 Feb", "19 Feb", "17 Jan, point to point"
+FITS = {  # by arm of public_arms: labels of recordings fitted to, tested on
+    "UR10e": (((ONE,), (TWO, POINTS, "5 Feb")), ((ONE, TWO), (POINTS, "6 Feb", "10 Feb"))),
+    "KUKA KR300": ((("A", "B"), ("C",)),),
+    "Panda": ((("one",), ("another",)), (("another",), ("one",))),
+}
 
 
-@dataclass(frozen=True)
-class Arm:
-    """A robot, its recordings by label, and how they are read."""
-
-    name: str
-    robot: Robot
-    recordings: Mapping[str, Path]
-    fits: Sequence[tuple[Sequence[str], Sequence[str]]]  # labels: fitted to, tested on
-    options: Mapping[str, Any] = field(default_factory=dict)
-
-
-def ur10e(clone: Path, _: Path) -> Arm:
-    """Motor currents at 100 Hz, of several days; gains of the controller: its target torques by currents."""
-    data = clone / "dataset_ur10e"
-    recordings = {
-        "12 Feb": data / "identification_data/ur-20_02_12-40sec_12harm.csv",
-        "19 Feb": data / "identification_data/ur-20_02_19_14harm50sec.csv",
-        "17 Jan, point to point": data / "validation_data/ur-20_01_17-ptp_10_points.csv",
-        "5 Feb": data / "identification_data/ur-20_02_05-20sec_12harm.csv",
-        "6 Feb": data / "identification_data/ur-20_02_06-20sec_10harm.csv",
-        "10 Feb": data / "identification_data/ur-20_02_10-20sec_7harm.csv",
-    }
-    robot = replace(
-        robot_of_description(clone / "URe/urdf/ur10e.urdf"),
-        tip="ee_link",
-        effort="current",
-        drive_gains=(11.976, 11.976, 9.839, 10.762, 10.762, 10.762),
-    )
-    one, two, *others = recordings
-    return Arm(
-        name="UR10e",
-        robot=robot,
-        recordings=recordings,
-        fits=(((one,), (two, *others[:2])), ((one, two), (others[0], *others[2:]))),
-        options={"columns": "time=1, q=2-7, qd=8-13, current=14-19"},
-    )
-
-
-def kr300(clone: Path, scratch: Path) -> Arm:
-    """Torques of the first three motors at 250 Hz; z of the published parameters points down."""
-    description = scratch / "kr300.yaml"
-    description.write_text(KR300_TABLE)
-    recorded = clone / "data/recorded_trajectories"
-    return Arm(
-        name="KUKA KR300",
-        robot=replace(
-            robot_of_description(description),
-            tip="link3",
-            gravity=(0.0, 0.0, 9.81),
-            effort="torque",
-        ),
-        recordings={x: recorded / f"2020-10-21 10s FF {x} 08ms/data.mat" for x in "ABC"},
-        fits=((("A", "B"), ("C",)),),
-        options={
-            "columns": "time=rec.time_cont, q=rec.act_pos_se_deg[*], "
-            "qd=rec.act_vel_se_deg_per_s[*], effort=rec.act_torque_abs_nm[*]",
-            "scale": ["q=deg", "qd=deg", f"effort={','.join(f'{k:.9g}' for k in KR300_GEARS)}"],
-        },
-    )
-
-
-def pandas(clone: Path, scratch: Path) -> Arm:
-    """Two robots. Of the other one, numbers a line."""
-    log = clone / "matlab/data/Exciting_Traj/Trajectory_1/rbt_log"
-    time, *states = (
-        np.loadtxt(log / f"exciting_traj_{name}.txt")
-        for name in ("time", "positions", "velocity", "torques")
-    )
-    q, qd, tau = (numbers.reshape(-1, 7) for numbers in states)
-    other = scratch / "panda.npz"
-    np.savez(other, time=time, q=q, qd=qd, tau=tau)
-    here, there = "one", "another"
-    return Arm(
-        name="Panda",
-        robot=load_robot("panda_real"),
-        recordings={here: recording_of("panda_real"), there: other},
-        fits=(((here,), (there,)), ((there,), (here,))),
-    )
+def arm_of(name: str, clones: Path, scratch: Path) -> tuple[Robot, Mapping[str, Path]]:
+    """One of FITS, and its recordings by label."""
+    if name != "Panda":
+        arm = ARMS[name].read(clones, scratch)
+        return load_robot(arm.robot), arm.recordings
+    (another,) = ARMS["Panda, another"].read(clones, scratch).recordings.values()
+    return load_robot("panda_real"), {"one": recording_of("panda_real"), "another": another}
 
 
 @dataclass(frozen=True)
@@ -214,18 +134,16 @@ def _solved(Y: Floats, tau: Floats, noise: Floats) -> Floats:
     return found
 
 
-def rows_of(arm: Arm, scratch: Path) -> list[tuple[str, ...]]:
+def rows_of(name: str, clones: Path, scratch: Path) -> list[tuple[str, ...]]:
     """Of the table."""
     rows = []
-    for fitted, tested in arm.fits:
-        found = identify([arm.recordings[x] for x in fitted], arm.robot, **arm.options)
-        files = write_identification(found, scratch / f"{arm.name}_{'_'.join(fitted)}.yaml")
-        train = [
-            Samples.of(evaluate(arm.recordings[x], arm.robot, **arm.options), MOST_SAMPLES)
-            for x in fitted
-        ]
+    robot, recordings = arm_of(name, clones, scratch)
+    for fitted, tested in FITS[name]:
+        found = identify([recordings[x] for x in fitted], robot)
+        files = write_identification(found, scratch / f"{name}_{'_'.join(fitted)}.yaml")
+        train = [Samples.of(evaluate(recordings[x], robot), MOST_SAMPLES) for x in fitted]
         for label in tested:
-            e = evaluate(arm.recordings[label], files.robot, **arm.options)
+            e = evaluate(recordings[label], files.robot)
             test = Samples.of(e)
             plain, same = (
                 least_squares(found.robot, train, test, law) for law in ("step", found.law)
@@ -235,8 +153,8 @@ def rows_of(arm: Arm, scratch: Path) -> list[tuple[str, ...]]:
             kept = e.samples.kept
             errors = (e.measured - e.computed)[kept]
             cells = _cells((plain, same), errors, own, test.moves, e.band[kept])
-            name = f"{arm.name}, {' and '.join(fitted)}" if label == tested[0] else ""
-            rows.append((name, label, *cells))
+            title = f"{name}, {' and '.join(fitted)}" if label == tested[0] else ""
+            rows.append((title, label, *cells))
     return rows
 
 
@@ -271,24 +189,12 @@ def _mean(errors: Floats) -> Floats:
     return np.asarray(np.sqrt((errors**2).mean(axis=-2)).mean(axis=-1))
 
 
-ARMS = {  # by clone
-    "dynamic_calibration": ur10e,
-    "Robot_Identification": kr300,
-    "FrankaEmikaPandaDynModel": pandas,
-}
-
-
 if __name__ == "__main__":
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     clones = Path(sys.argv[1])
-    missing = [clone for clone in ARMS if not (clones / clone).is_dir()]
-    rows: list[tuple[str, ...]] = []
+    if missing := missing_clones(clones, ("UR10e", "KUKA KR300", "Panda, another")):
+        sys.exit("\n".join(missing))
     with TemporaryDirectory() as directory:
-        for clone, arm_of in ARMS.items():
-            if clone not in missing:
-                rows += rows_of(arm_of(clones / clone, Path(directory)), Path(directory))
-    if missing:
-        print(table(HEADINGS, rows))
-        sys.exit(f"{clones}: expected clones of {', '.join(missing)}, too; nothing was replaced")
+        rows = [row for name in FITS for row in rows_of(name, clones, Path(directory))]
     show(table(HEADINGS, rows), "identification_results.md", "transfer_study")

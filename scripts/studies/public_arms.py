@@ -1,0 +1,406 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings of other people's robots, as `ids identify` reads them.
+
+    arm = ARMS["UR10e"].read(clones, out)   # writes out/ur10e.yaml, and a description where there is none
+    identify(arm.recordings["12 Feb"], arm.robot, accept=arm.accept)
+
+clones is a directory of clones of the repositories that ARMS names. Nothing of them is in the project: units,
+columns and geometry below are as their owners state them.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.robots.robots import RIGID_BODY
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+NNFM = "longshike/NNFM-A-Novel-Neural-Network-Modeling-Approach-for-Robot-Flexible-Joints-Friction"
+MASTER_GEARS = np.eye(7)  # angles of the da Vinci master's motors by those of its joints
+MASTER_GEARS[2, 1] = 1.0
+MASTER_GEARS[3, 2] = 0.6697
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A run configuration, and recordings by label."""
+
+    robot: Path
+    recordings: Mapping[str, Path]
+    accept: Sequence[str] = ()  # what its recordings are refused for, and isn't a mistake
+
+
+@dataclass(frozen=True)
+class Source:
+    """A repository on GitHub: its owner and name, its licence, how its clone is read."""
+
+    repository: str
+    licence: str
+    reader: Callable[[Path, Path], Arm]
+
+    @property
+    def folder(self) -> str:
+        """Of its clone."""
+        return self.repository.split("/")[1]
+
+    def read(self, clones: Path, out: Path) -> Arm:
+        """Write the run configuration, and a description that the repository lacks, into a directory.
+
+        Raises FileNotFoundError for files that the clone lacks.
+        """
+        arm = self.reader(clones / self.folder, out)
+        for recording in arm.recordings.values():
+            for file in str(recording).split("+"):
+                if not Path(file).exists():
+                    raise FileNotFoundError(
+                        f"{file}: expected it in a clone of https://github.com/{self.repository}"
+                    )
+        return arm
+
+
+def ur10e(clone: Path, out: Path) -> Arm:
+    """Motor currents at 100 Hz, of several days; gains of the controller: its target torques by currents."""
+    data = clone / "dataset_ur10e"
+    return Arm(
+        _configuration(
+            out / "ur10e.yaml",
+            urdf=clone / "URe/urdf/ur10e.urdf",
+            tip="ee_link",
+            effort="current",
+            drive_gains=[11.976, 11.976, 9.839, 10.762, 10.762, 10.762],
+            table={"columns": "time=1, q=2-7, qd=8-13, current=14-19"},
+        ),
+        {
+            "12 Feb": data / "identification_data/ur-20_02_12-40sec_12harm.csv",
+            "19 Feb": data / "identification_data/ur-20_02_19_14harm50sec.csv",
+            "17 Jan, point to point": data / "validation_data/ur-20_01_17-ptp_10_points.csv",
+            "5 Feb": data / "identification_data/ur-20_02_05-20sec_12harm.csv",
+            "6 Feb": data / "identification_data/ur-20_02_06-20sec_10harm.csv",
+            "10 Feb": data / "identification_data/ur-20_02_10-20sec_7harm.csv",
+        },
+    )
+
+
+def kr300(clone: Path, out: Path) -> Arm:
+    """Torques of the first three motors at 250 Hz; z of the published parameters points down."""
+    description = out / "kr300_dh.yaml"
+    description.write_text(  # masses [kg] about as published
+        """\
+convention: modified
+degrees: true
+joints:
+  - {a: 0, alpha: 0, d: -0.675, mass: 395}
+  - {a: 0.35, alpha: 90, d: -0.189, mass: 339}
+  - {a: 1.15, alpha: 0, d: 0.189, mass: 192}
+""",
+        encoding="utf-8",
+    )
+    gears = ", ".join(f"{k:.9g}" for k in (1798 / 7, 1872 / 7, 757 / 3))
+    recorded = clone / "data/recorded_trajectories"
+    return Arm(
+        _configuration(
+            out / "kr300.yaml",
+            urdf=description,
+            tip="link3",
+            gravity=[0, 0, 9.81],
+            table={
+                "columns": "time=rec.time_cont, q=rec.act_pos_se_deg[*], qd=rec.act_vel_se_deg_per_s[*], "
+                "effort=rec.act_torque_abs_nm[*]",
+                "scale": ["q=deg", "qd=deg", f"effort={gears}"],
+            },
+        ),
+        {x: recorded / f"2020-10-21 10s FF {x} 08ms/data.mat" for x in "ABC"},
+    )
+
+
+def another_panda(clone: Path, out: Path) -> Arm:
+    """Numbers a line, of torques at 1 kHz."""
+    log = clone / "matlab/data/Exciting_Traj/Trajectory_1/rbt_log"
+    time, *states = (
+        np.loadtxt(log / f"exciting_traj_{name}.txt")
+        for name in ("time", "positions", "velocity", "torques")
+    )
+    q, qd, tau = (numbers.reshape(-1, 7) for numbers in states)
+    recording = out / "another_panda.npz"
+    np.savez(recording, time=time, q=q, qd=qd, tau=tau)
+    return Arm(
+        _configuration(
+            out / "another_panda.yaml",
+            urdf="package://inverse_dynamics_robots/urdf/panda.urdf",
+        ),
+        {"trajectory 1": recording},
+    )
+
+
+def master_arm(clone: Path, out: Path) -> Arm:
+    """Torques of the da Vinci master's seven motors at 200 Hz.
+
+    A parallelogram: the third motor turns the elbow against the upper arm, the fourth one the platform of the wrist
+    against what the elbow turns it.
+    """
+    urdf = out / "master_arm.urdf"
+    urdf.write_text(_master_arm(), encoding="utf-8")
+    recorded = clone / "data/mtm/measured_trajectory"
+    return Arm(
+        _configuration(
+            out / "master_arm.yaml",
+            urdf=urdf,
+            tip="*",
+            table={
+                "columns": "q=1-7, qd=8-14, effort=15-21",
+                "rate": 200,
+                "gears": MASTER_GEARS.ravel().tolist(),
+            },
+        ),
+        {x: recorded / f"{x}_results.csv" for x in ("one", "two")},
+        # Velocities of the two fast joints at the wrist aren't the slopes of positions; masses are guesses, and
+        # weights balance the arm.
+        accept=("velocity", "no_gravity", "total_mass"),
+    )
+
+
+def _master_arm() -> str:
+    """URDF; masses [kg] and centers [m] are halfway between the owners' bounds."""
+    lines = ['<robot name="master_arm">', '<link name="base"/>']
+    for link, parent, (
+        a,
+        alpha,
+        d,
+        theta,
+    ), mass, center, follows in (  # modified parameters, m and degrees
+        ("yaw", "base", (0, 0, -0.2154, 0), 6, "0 0 0.1", ""),
+        ("shoulder", "yaw", (0, -90, 0, 90), 4, "0.025 0 0", ""),
+        ("elbow", "shoulder", (0.2794, 0, 0, 90), 1.6, "0.15 0 0", ""),
+        ("platform", "elbow", (0.3645, -90, 0.151, 0), 0.3, "0 0.06 -0.075", ""),
+        ("pitch", "platform", (0, 90, 0, 0), 0.22, "0 -0.05 -0.05", ""),
+        ("wrist_yaw", "pitch", (0, -90, 0, 90), 0.16, "0 0.05 -0.05", ""),
+        ("roll", "wrist_yaw", (0, -90, 0, 180), 0.1, "0 0 0.05", ""),
+        ("drive", "shoulder", (0, 0, 0, 90), 3, "0 0 0", '<mimic joint="elbow_joint"/>'),
+        (
+            "rod",
+            "drive",
+            (0.1, 0, 0, -90),
+            0.3,
+            "0.125 0 0.06",
+            '<mimic joint="elbow_joint" multiplier="-1"/>',
+        ),
+    ):
+        turn, offset = np.radians([alpha, theta])
+        moment = mass * 1e-3  # kg m^2, a guess
+        lines += [
+            f'<link name="{link}_axis"/>',
+            f'<joint name="{link}_axis" type="fixed"><parent link="{parent}"/><child link="{link}_axis"/>'
+            f'<origin xyz="{a} {-np.sin(turn) * d:.9g} {np.cos(turn) * d:.9g}" rpy="{turn:.9g} 0 0"/></joint>',
+            f'<link name="{link}"><inertial><origin xyz="{center}"/><mass value="{mass}"/>'
+            f'<inertia ixx="{moment}" iyy="{moment}" izz="{moment}" ixy="0" ixz="0" iyz="0"/></inertial></link>',
+            f'<joint name="{link}_joint" type="revolute"><parent link="{link}_axis"/><child link="{link}"/>'
+            f'<origin rpy="0 0 {offset:.9g}"/><axis xyz="0 0 1"/>'
+            f'<limit lower="-9" upper="9" effort="5" velocity="10"/>{follows}</joint>',
+        ]
+    return "\n".join([*lines, "</robot>", ""])
+
+
+def sawyer(clone: Path, out: Path) -> Arm:
+    """Torques at 1 kHz."""
+    description = out / "sawyer_dh.yaml"
+    description.write_text(
+        """\
+convention: modified
+degrees: true
+mass: 19
+joints:
+  - {a: 0, alpha: 0, d: 0}
+  - {a: 0.081, alpha: -90, d: 0.1925, theta: -90}
+  - {a: 0, alpha: -90, d: 0.4}
+  - {a: 0, alpha: 90, d: -0.1685}
+  - {a: 0, alpha: -90, d: 0.4}
+  - {a: 0, alpha: 90, d: 0.1363}
+  - {a: 0, alpha: -90, d: 0}
+""",
+        encoding="utf-8",
+    )
+    data = clone / "other_files/process_data"
+    files = "+".join(f"{data / name}.mat" for name in ("t", "q", "qDot", "tau"))
+    return Arm(
+        _configuration(out / "sawyer.yaml", urdf=description),
+        {"excitation": Path(files)},
+    )
+
+
+def med7(clone: Path, out: Path) -> Arm:
+    """Torques of the opposite sign, at 100 Hz, without time and velocity."""
+    return Arm(
+        _configuration(
+            out / "med7.yaml",
+            urdf=clone / "urdf/med/med7dock.urdf",
+            table={"rate": 100, "scale": ["effort=-1"]},
+        ),
+        {"excitation": clone / "src/test/measurements.csv"},
+    )
+
+
+def ar5(clone: Path, out: Path) -> Arm:
+    """Torques at 50 Hz, of an arm on a wall."""
+    return Arm(
+        _configuration(
+            out / "ar5.yaml", urdf=clone / "urdf/AR5-5_07R-W4C4A2.urdf", gravity=[9.81, 0, 0]
+        ),
+        {"excitation": clone / "src/config/dynamics_identification_data_real.csv"},
+    )
+
+
+def ur5(clone: Path, out: Path) -> Arm:
+    """Motor currents at 125 Hz; gains: target torques by target currents, without friction, of movement 6.
+
+    A file for each quantity, whose rows begin with their own time.
+    """
+    description = out / "ur5_dh.yaml"
+    description.write_text(
+        """\
+convention: standard
+degrees: true
+joints:
+  - {a: 0, alpha: 90, d: 0.089159, mass: 3.7}
+  - {a: -0.425, alpha: 0, d: 0, mass: 8.393}
+  - {a: -0.39225, alpha: 0, d: 0, mass: 2.275}
+  - {a: 0, alpha: 90, d: 0.10915, mass: 1.219}
+  - {a: 0, alpha: -90, d: 0.09465, mass: 1.219}
+  - {a: 0, alpha: 0, d: 0.0823, mass: 0.1879}
+""",
+        encoding="utf-8",
+    )
+    recordings = {}
+    for label, movement in (
+        ("movement 6", "Movement_No6_Acc_slow_Verify_Model"),
+        ("movement 8", "Movement_No8_Singularity_Free_1"),
+    ):
+        log = (
+            clone / "JointSpaceControl_Model_C_ForceEstim/RecordedUR5Data" / movement / "csv_files"
+        )
+        q, qd, current = (
+            np.loadtxt(log / f"log_{name}_actual.csv", delimiter=",") for name in ("q", "qd", "i")
+        )
+        recordings[label] = out / f"ur5_{label.replace(' ', '_')}.npz"
+        same = [np.interp(q[:, 0], qd[:, 0], column) for column in qd[:, 1:].T]
+        also = [np.interp(q[:, 0], current[:, 0], column) for column in current[:, 1:].T]
+        np.savez(
+            recordings[label],
+            time=q[:, 0],
+            q=q[:, 1:],
+            qd=np.column_stack(same),
+            current=np.column_stack(also),
+        )
+    return Arm(
+        _configuration(
+            out / "ur5.yaml",
+            urdf=description,
+            effort="current",
+            drive_gains=[11.5, 10.1, 10.6, 10.0, 10.2, 8.8],
+        ),
+        recordings,
+    )
+
+
+def cobot(clone: Path, out: Path) -> Arm:
+    """Torques every 6 ms, that of the third joint of the opposite sign; a row for each joint and quantity."""
+    description = out / "cobot_dh.yaml"
+    description.write_text(
+        """\
+convention: modified
+degrees: true
+joints:
+  - {a: 0, alpha: 0, d: 0.1181}
+  - {a: 0, alpha: 90, d: 0}
+  - {a: -0.416, alpha: 0, d: 0}
+  - {a: -0.4208, alpha: 0, d: 0.1301}
+  - {a: 0, alpha: 90, d: 0.1021}
+  - {a: 0, alpha: -90, d: 0.0568}
+""",
+        encoding="utf-8",
+    )
+    recordings = {}
+    for number in (1, 2, 3):
+        data = clone / "python_identification/csv_data"
+        states = np.loadtxt(data / f"dataInput{number}.csv", delimiter=",")
+        efforts = np.loadtxt(data / f"tau{number}.csv", delimiter=",")
+        recordings[f"trajectory {number}"] = out / f"cobot_{number}.npz"
+        np.savez(
+            recordings[f"trajectory {number}"],
+            time=np.arange(states.shape[1]) * 0.006,
+            q=states[:6].T,
+            qd=states[6:12].T,
+            tau=efforts.T,
+        )
+    return Arm(
+        _configuration(
+            out / "cobot.yaml", urdf=description, table={"scale": ["effort=1,1,-1,1,1,1"]}
+        ),
+        recordings,
+    )
+
+
+def franka_joint(joint: int, case: int, clock: float = 1.0) -> Callable[[Path, Path], Arm]:
+    """One joint of a Franka at three speeds: torques that a rigid model leaves. A joint about the vertical.
+
+    clock: seconds by those of the file, as velocities and positions have it.
+    """
+
+    def read(clone: Path, out: Path) -> Arm:
+        description = out / "one_joint_dh.yaml"
+        description.write_text(
+            "convention: modified\njoints:\n  - {a: 0, alpha: 0, d: 0.1}\n", encoding="utf-8"
+        )
+        data = clone / "Comparative data/Franka Robot"
+        return Arm(
+            _configuration(
+                out / f"franka_joint_{joint}.yaml",
+                urdf=description,
+                table={
+                    "columns": f"time=time, q=q{joint}, qd=dq{joint}, effort=q{joint}_tau_J_compensate",
+                    "scale": [f"time={clock}"],
+                },
+            ),
+            {speed: data / f"case{case}_{speed}.csv" for speed in ("slow", "middle", "high")},
+        )
+
+    return read
+
+
+def _configuration(file: Path, **entries: Any) -> Path:
+    """Write a run configuration."""
+    head = {"schema": 1, "name": file.stem, "description": f"Public recordings of {file.stem}"}
+    values = {**head, "plugin": RIGID_BODY, "friction": False, **entries}
+    lines = (f"{key}: {json.dumps(value, default=str)}\n" for key, value in values.items())
+    file.write_text("".join(lines), encoding="utf-8")
+    return file
+
+
+ARMS = {
+    "UR10e": Source("shamilmamedov/dynamic_calibration", "none stated", ur10e),
+    "KUKA KR300": Source("JonasWeigand/Robot_Identification", "MIT", kr300),
+    "Panda, another": Source("marcocognetti/FrankaEmikaPandaDynModel", "GPL-3.0", another_panda),
+    "da Vinci master": Source("WPI-AIM/dvrk_dynamics_identification", "none stated", master_arm),
+    "Sawyer": Source("songtangzhong/robot-dynamics-identify-v1.3", "none stated", sawyer),
+    "KUKA LBR Med 7": Source("lbr-stack/dynamic_parameter_identification", "none stated", med7),
+    "Rokae AR5": Source("FrankJIE09/Dynamics_identification_Frank", "none stated", ar5),
+    "UR5": Source("kkufieta/ur5_modeling_force_estimate", "Apache-2.0", ur5),
+    "cobot": Source("Naruton94/robot_identification", "none stated", cobot),
+    "Franka joint 2": Source(NNFM, "none stated", franka_joint(2, case=3)),
+    "Franka joint 7": Source(NNFM, "none stated", franka_joint(7, case=4, clock=0.5)),
+}
+
+
+def missing_clones(clones: Path, names: Sequence[str]) -> list[str]:
+    """A line for each of ARMS whose clone isn't there."""
+    return [
+        f"{name}: expected {clones / ARMS[name].folder}, a clone of https://github.com/{ARMS[name].repository}"
+        for name in names
+        if not (clones / ARMS[name].folder).is_dir()
+    ]
