@@ -30,9 +30,9 @@ MASTER_GEARS[3, 2] = 0.6697
 
 @dataclass(frozen=True)
 class Arm:
-    """A run configuration, and recordings by label."""
+    """A run configuration, a file or one of the project's, and recordings by label."""
 
-    robot: Path
+    robot: Path | str
     recordings: Mapping[str, Path]
     accept: Sequence[str] = ()  # what its recordings are refused for, and isn't a mistake
 
@@ -78,6 +78,7 @@ def ur10e(clone: Path, out: Path) -> Arm:
             table={"columns": "time=1, q=2-7, qd=8-13, current=14-19"},
         ),
         {
+            "10 Feb, 30 s": data / "identification_data/ur-20_02_10-30sec_12harm.csv",
             "12 Feb": data / "identification_data/ur-20_02_12-40sec_12harm.csv",
             "19 Feb": data / "identification_data/ur-20_02_19_14harm50sec.csv",
             "17 Jan, point to point": data / "validation_data/ur-20_01_17-ptp_10_points.csv",
@@ -130,13 +131,7 @@ def another_panda(clone: Path, out: Path) -> Arm:
     q, qd, tau = (numbers.reshape(-1, 7) for numbers in states)
     recording = out / "another_panda.npz"
     np.savez(recording, time=time, q=q, qd=qd, tau=tau)
-    return Arm(
-        _configuration(
-            out / "another_panda.yaml",
-            urdf="package://inverse_dynamics_robots/urdf/panda.urdf",
-        ),
-        {"trajectory 1": recording},
-    )
+    return Arm("panda_real", {"trajectory 1": recording})
 
 
 def master_arm(clone: Path, out: Path) -> Arm:
@@ -309,7 +304,10 @@ joints:
 
 
 def cobot(clone: Path, out: Path) -> Arm:
-    """Torques every 6 ms, that of the third joint of the opposite sign; a row for each joint and quantity."""
+    """Torques every 6 ms; a row for each joint and quantity.
+
+    Owners turn the sign of the third torque. That of the sixth drives its motion, so it is turned, too.
+    """
     description = out / "cobot_dh.yaml"
     description.write_text(
         """\
@@ -329,20 +327,18 @@ joints:
     for number in (1, 2, 3):
         data = clone / "python_identification/csv_data"
         states = np.loadtxt(data / f"dataInput{number}.csv", delimiter=",")
-        efforts = np.loadtxt(data / f"tau{number}.csv", delimiter=",")
-        recordings[f"trajectory {number}"] = out / f"cobot_{number}.npz"
-        np.savez(
-            recordings[f"trajectory {number}"],
-            time=np.arange(states.shape[1]) * 0.006,
-            q=states[:6].T,
-            qd=states[6:12].T,
-            tau=efforts.T,
-        )
+        for name, label in (("tau", ""), ("tau_filt", ", smooth")):
+            efforts = np.loadtxt(data / f"{name}{number}.csv", delimiter=",")
+            recording = out / f"cobot_{name}{number}.npz"
+            time = np.arange(states.shape[1]) * 0.006
+            np.savez(recording, time=time, q=states[:6].T, qd=states[6:12].T, tau=efforts.T)
+            recordings[f"trajectory {number}{label}"] = recording
     return Arm(
         _configuration(
-            out / "cobot.yaml", urdf=description, table={"scale": ["effort=1,1,-1,1,1,1"]}
+            out / "cobot.yaml", urdf=description, table={"scale": ["effort=1,1,-1,1,1,-1"]}
         ),
         recordings,
+        accept=("saturation",),  # a median filter holds the smooth torques
     )
 
 

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,8 +16,6 @@ from scipy.io import savemat
 from inverse_dynamics import load_robot, open_run
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from inverse_dynamics import JointLog
 
 N = 40  # samples
@@ -83,14 +84,15 @@ def test_motors_of_the_da_vinci_master_turn_joints_before_their_own(tmp_path: Pa
     assert (log.effort * log.qd).sum() == pytest.approx((tau * qd).sum())  # power
 
 
-def test_the_third_torque_of_the_cobot_is_of_the_opposite_sign(tmp_path: Path) -> None:
+def test_two_torques_of_the_cobot_are_of_the_opposite_sign(tmp_path: Path) -> None:
     q, qd, tau = motion(6)
     data = tmp_path / "robot_identification/python_identification/csv_data"
     for number in (1, 2, 3):
         saved(data / f"dataInput{number}.csv", np.hstack([q, qd, tau]).T)
         saved(data / f"tau{number}.csv", tau.T)
+        saved(data / f"tau_filt{number}.csv", tau.T)
     log = log_of(ARMS["cobot"].read(tmp_path, tmp_path), "trajectory 2")
-    np.testing.assert_allclose(log.effort, tau * [1, 1, -1, 1, 1, 1], atol=1e-9)
+    np.testing.assert_allclose(log.effort, tau * [1, 1, -1, 1, 1, -1], atol=1e-9)
     assert log.time[1] - log.time[0] == pytest.approx(0.006)
 
 
@@ -125,3 +127,16 @@ def test_the_clock_of_the_seventh_joint_runs_twice_as_fast(tmp_path: Path) -> No
     log = log_of(ARMS["Franka joint 7"].read(tmp_path, tmp_path), "high")
     np.testing.assert_allclose(np.diff(log.time), 0.01, atol=1e-9)
     np.testing.assert_allclose(log.effort, tau, atol=1e-9)
+
+
+def test_the_study_names_each_clone_that_is_missing(tmp_path: Path) -> None:
+    study = Path(__file__).with_name("field_study.py")
+    command = [sys.executable, str(study), str(tmp_path), "no such robot"]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 1
+    assert run.stdout.startswith("| robot |")
+    for source in ARMS.values():
+        assert (
+            f"{tmp_path / source.folder}, a clone of https://github.com/{source.repository}"
+            in run.stderr
+        )
