@@ -24,7 +24,7 @@ import numpy as np
 from public_arms import ARMS, MASTER_GEARS, Arm, missing_clones
 from scipy.io import loadmat
 from scipy.signal import butter, filtfilt
-from studies import recording_of, show, table
+from studies import MOST_SAMPLES, recording_of, show, solved, table
 
 from inverse_dynamics import Solver, evaluate, identify
 from inverse_dynamics.identification.files import write_identification
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.identification.result import Identification
 
 PINOCCHIO = "pinocchio_inverse_dynamics_solver/InverseDynamicsSolverPinocchio"
-MOST_SAMPLES = 12_000  # that least squares take of a recording
-RANK = 1e-7  # of the greatest singular value
 WIDTH = 0.02  # rad/s, of the step of Coulomb friction in least squares
 SPEEDS = ("slow", "middle", "high")
 SMOOTH = [f"trajectory {k}, smooth" for k in (1, 2, 3)]
@@ -261,8 +259,8 @@ class LeastSquares:
 
     def _fitted(self, rows: Any) -> Floats:
         Y, tau = self._columns[rows], self._torques[rows]
-        noise = np.sqrt(((tau - Y @ _solved(Y, tau)) ** 2).mean(axis=0))
-        return _solved(Y / noise[:, None], tau / noise)
+        ordinary = solved(Y, tau, np.ones(tau.shape[1]))
+        return solved(Y, tau, np.sqrt(((tau - Y @ ordinary) ** 2).mean(axis=0)))
 
     def _of(self, e: Evaluation, rows: Any) -> Floats:
         q, qd, qdd = e.log.q[rows], e.log.qd[rows], e.qdd[rows]
@@ -270,13 +268,6 @@ class LeastSquares:
         own = (qdd, qd, np.tanh(qd / WIDTH), np.ones_like(qd))
         each = [term[:, :, None] * np.eye(q.shape[1]) for term in own]
         return np.concatenate([links, *each], axis=2)
-
-
-def _solved(Y: Floats, tau: Floats) -> Floats:
-    rows = Y.reshape(-1, Y.shape[2])
-    scale = np.linalg.norm(rows, axis=0) + 1e-9
-    found: Floats = np.linalg.lstsq(rows / scale, tau.ravel(), rcond=RANK)[0] / scale
-    return found
 
 
 def row_of(protocol: Protocol, clones: Path, scratch: Path) -> tuple[str, ...]:

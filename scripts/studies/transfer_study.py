@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from public_arms import ARMS, missing_clones
-from studies import recording_of, show, table
+from studies import MOST_SAMPLES, recording_of, show, solved, table
 
 from inverse_dynamics import _core, evaluate, identify, load_robot
 from inverse_dynamics.identification.files import write_identification
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.robots.robots import Robot
 
-MOST_SAMPLES = 12_000  # that least squares take
-RANK = 1e-7  # of the greatest singular value
 STILL = 0.01  # of each joint's greatest velocity, which a moving arm's joints aren't all below
 PRIOR_STRENGTH = 100.0  # of consistent least squares
 TERMS = {"step": 4, "load": 5, "stribeck": 6}  # of friction and rotor inertia
@@ -104,8 +102,8 @@ def least_squares(
     fit = fitter.fit(data, _core.ArmFitOptions(law, prior_strength=PRIOR_STRENGTH))
     Y = np.concatenate([_columns(model, fit, law, s) for s in train])
     tau = np.concatenate([s.tau for s in train])
-    ordinary = _solved(Y, tau, np.ones(tau.shape[1]))
-    weighted = _solved(Y, tau, np.sqrt(((tau - Y @ ordinary) ** 2).mean(axis=0)))
+    ordinary = solved(Y, tau, np.ones(tau.shape[1]))
+    weighted = solved(Y, tau, np.sqrt(((tau - Y @ ordinary) ** 2).mean(axis=0)))
     computed = (
         *(_columns(model, fit, law, test) @ x for x in (ordinary, weighted)),
         fitter.torques(fit, test.q, test.qd, test.qdd),
@@ -124,14 +122,6 @@ def _columns(model: FastModel, fit: ArmFit, law: str, s: Samples) -> Floats:
     return np.concatenate(
         [links, *(term[:, :, None] * np.eye(s.q.shape[1]) for term in own[: TERMS[law]])], axis=2
     )
-
-
-def _solved(Y: Floats, tau: Floats, noise: Floats) -> Floats:
-    """(m,)"""
-    rows = (Y / noise[:, None]).reshape(-1, Y.shape[2])
-    scale = np.linalg.norm(rows, axis=0) + 1e-9
-    found: Floats = np.linalg.lstsq(rows / scale, (tau / noise).ravel(), rcond=RANK)[0] / scale
-    return found
 
 
 def rows_of(name: str, clones: Path, scratch: Path) -> list[tuple[str, ...]]:
