@@ -73,6 +73,17 @@ std::string existingFile(const std::optional<LocatedValue>& value) {
   return path;
 }
 
+/// A name, not a path: one of the models of the project.
+std::string modelFile(const std::optional<LocatedValue>& value) {
+  if (!value) return "";
+  const fs::path name = value->text();
+  if (name.has_extension() || name.has_parent_path()) return existingFile(value);
+  const fs::path file =
+      fs::path(packageShare(kRobotsPackage)) / "models" / (name.string() + ".yaml");
+  if (!isFile(file)) value->fail("a file, or the name of a model", file.string() + " isn't there");
+  return file;
+}
+
 std::optional<std::array<double, 3>> gravityOf(const std::optional<LocatedValue>& value) {
   if (!value) return std::nullopt;
   const std::vector<LocatedValue> entries = value->entries(3);
@@ -173,7 +184,7 @@ RunConfiguration readFile(const std::string& file) {
   }
   readAccelerations(top.optional("accelerations"), robot);
   robot.urdf = existingFile(top.optional("urdf"));
-  robot.model = existingFile(top.optional("model"));
+  robot.model = modelFile(top.optional("model"));
   robot.root = textOf(top.optional("root"));
   robot.tip = tipOf(top.optional("tip"));
   robot.gravity = gravityOf(top.optional("gravity"));

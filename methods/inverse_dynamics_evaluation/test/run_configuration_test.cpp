@@ -68,7 +68,8 @@ TEST_F(RunConfigurations, AreFoundByNameInTheSourcedWorkspaces) {
   for (const std::string& name : robotNames()) {
     const RunConfiguration robot = readRunConfiguration(name);
     EXPECT_EQ(robot.name, name);
-    EXPECT_TRUE(fs::is_regular_file(robot.urdf)) << robot.urdf;
+    const std::string& file = robot.urdf.empty() ? robot.model : robot.urdf;
+    EXPECT_TRUE(fs::is_regular_file(file)) << name << ": " << file;
   }
   EXPECT_THAT(errorOf("ur10_rael"),
               AllOf(StartsWith("robot 'ur10_rael': expected one of "),
@@ -117,6 +118,19 @@ TEST_F(RunConfigurations, HoldWhatTheFileSays) {
   EXPECT_EQ(least.effort, "torque");
   EXPECT_EQ(least.accelerations, "auto");
   EXPECT_EQ(solverParameters(least), (SolverParameters{{"friction", true}}));
+}
+
+TEST_F(RunConfigurations, NameAModelOfTheProjectOrAFile) {
+  const auto with_model = [this](const std::string& model) {
+    return write(std::string(kLeast) + "model: " + model + "\n");
+  };
+  const fs::path named = readRunConfiguration(with_model("ur10_identified")).model;
+  EXPECT_EQ(named.filename(), "ur10_identified.yaml");
+  EXPECT_TRUE(fs::is_regular_file(named)) << named;
+  EXPECT_THAT(errorOf(with_model("ur10_identifeid")),
+              AllOf(HasSubstr("model: expected a file, or the name of a model"),
+                    HasSubstr("models/ur10_identifeid.yaml isn't there")));
+  EXPECT_THAT(errorOf(with_model("ur10_identified.yaml")), HasSubstr("isn't there"));
 }
 
 TEST_F(RunConfigurations, ChangesReplaceWhatBelongsToAField) {
