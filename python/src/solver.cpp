@@ -48,7 +48,7 @@ constexpr const char* kUsualPlugin =
     "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody";
 
 /// The robot of a Robot, a name of robot_names(), the file of a run configuration, `package/Class`, or
-/// a package without its ending. Nothing, with a description: the usual plugin.
+/// a package without its ending. Nothing, with a description or a model: the usual plugin.
 Robot robotOf(const SolverName& named, bool described) {
   if (const auto* const robot = std::get_if<Robot>(&named)) return *robot;
   const std::string& text = std::get<PathText>(named).bytes;
@@ -58,7 +58,7 @@ Robot robotOf(const SolverName& named, bool described) {
   robot.plugin = text.empty() && described ? kUsualPlugin : text;
   if (robot.plugin.empty()) {
     throw ids::InvalidParameterValueException(
-        ids::errorText("Solver", "", "a robot, a plugin or urdf=", "none",
+        ids::errorText("Solver", "", "a robot, a plugin, urdf= or model=", "none",
                        "`ids robots` lists the names of both"));
   }
   const std::string ending = std::filesystem::path(text).extension();
@@ -101,7 +101,7 @@ std::unique_ptr<Solver> makeSolver(const SolverName& named, const Description& u
                                    const std::optional<bool>& friction, const std::string& attached,
                                    const std::optional<std::string>& model,
                                    const ParameterDict& parameters) {
-  Robot robot = robotOf(named, !urdf.text.empty());
+  Robot robot = robotOf(named, !urdf.text.empty() || model);
   const bool described = urdf.text.empty() && !robot.urdf.empty();
   Origin origin{robot.plugin,
                 described ? readDescription(textOf(robot.urdf)) : urdf.text,

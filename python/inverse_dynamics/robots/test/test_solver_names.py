@@ -75,7 +75,7 @@ def test_plugins_have_short_names(short, package):
         (("ur10_reel",), "did you mean ur10_real?"),
         (("no/Such",), "'no/Such': not found"),
         (("arm.yaml",), "arm.yaml: no such file"),
-        ((), "Solver: expected a robot, a plugin or urdf=, got none"),
+        ((), "Solver: expected a robot, a plugin, urdf= or model=, got none"),
     ],
 )
 def test_what_names_no_solver_is_said(arguments, expected):
