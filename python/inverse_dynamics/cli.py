@@ -251,6 +251,7 @@ def _run(given: list[str]) -> int:
         return 2
     try:
         options = parser.parse_args(given)
+        options.command_line = given
         options.run(options)
         if sys.stdout is not None:
             sys.stdout.flush()

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from inverse_dynamics.arrays import Floats
     from inverse_dynamics.identification.hold_out import HoldOut
     from inverse_dynamics.identification.result import Identification
 
@@ -66,27 +67,40 @@ def write_identification(
     return IdentificationFiles(*found.files(out))
 
 
-def model_file_text(found: Identification, name: str) -> str:
-    """The model as a model file (docs/model_file.md), with every digit. Raises RobotError, SolverError."""
+def model_file_text(found: Identification, name: str, origin: str = "`ids identify`") -> str:
+    """The model as a model file (docs/model_file.md), with every digit. Raises RobotError, SolverError.
+
+    origin: what made the model.
+    """
     names = listed([path.name for path in found.recordings])
-    errors = ", ".join(
-        f"{joint} {value:.3g} {unit}"
-        for joint, value, unit in zip(
-            found.joints, found.held_out["identified"], found.units, strict=True
+    errors = "; ".join(
+        f"{where}{_errors_told(found, rmse)}"
+        for where, rmse in (
+            ("", found.held_out["identified"]),
+            *((f"on {test.recording.name} ", test.rmse["identified"]) for test in found.hold_out),
         )
     )
+    findings = "".join(f" {finding.text}." for finding in found.findings)
     at = [f"{joint} at {q:.4g}" for joint, q in locked_joints(found.robot).items()]
     posture = f"Joints that it lacks are held: {listed(at)}. " if at else ""
     return identified_model(found).file_text(
         name=name,
-        source=f"`ids identify` on {counted(len(found.recordings), 'recording')} ({names}): {found.samples} samples, "
+        source=f"{origin} on {counted(len(found.recordings), 'recording')} ({names}): {found.samples} samples, "
         f"{found.duration:.1f} s; prior and geometry: {urdf_of(found).name}; friction law "
         f"{found.law}, prior strength {found.prior_strength:g}, torque delay {1e3 * found.delay:.1f} "
         f"ms; {found.filter}; efforts: {found.effort}",
         validity=f"All links are physically consistent, so H is positive definite. {posture}Root mean square error on "
         f"data that were held out: {errors}. Within the ranges stated as `seen`, of the robot, load and "
         "temperature of the recordings: friction and offset differ on another day. Masses of single "
-        "links are mostly those of the description: torques don't determine them.",
+        f"links are mostly those of the description: torques don't determine them.{findings}",
+    )
+
+
+def _errors_told(found: Identification, rmse: Floats) -> str:
+    """RMSE (n,) of each joint."""
+    return ", ".join(
+        f"{joint} {value:.3g} {unit}"
+        for joint, value, unit in zip(found.joints, rmse, found.units, strict=True)
     )
 
 

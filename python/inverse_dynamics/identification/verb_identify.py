@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -126,6 +127,12 @@ def declare(options: Options) -> None:
         "efforts are its commands, and --robot has a model with all of the friction",
         Path,
     )
+    options.add(
+        "--gallery DIRECTORY",
+        "also write what a pull request to the gallery of robots has, into a checkout of the project or another "
+        "directory, and its text, NAME.md (docs/robots.md)",
+        Path,
+    )
     options.overrides(*CHAIN, *RECORDING)
 
 
@@ -140,6 +147,7 @@ def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.identification.gallery import check_gallery, write_gallery
     from inverse_dynamics.identification.identify import identify
     from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.identification.universal_robots import friction_request
@@ -162,6 +170,8 @@ def run(arguments: argparse.Namespace) -> None:
         arguments.overwrite or not any(file.exists() for file in more.values())
     )
     Identification.check(arguments.out, overwrite=overwrite, more=more, inputs=inputs)
+    if arguments.gallery:
+        check_gallery(robot, arguments.out, arguments.gallery, overwrite=overwrite)
     with progress_bar() as progress:
         found = identify(
             arguments.recordings,
@@ -176,6 +186,10 @@ def run(arguments: argparse.Namespace) -> None:
     texts = {"--urdf-out": urdf_text, "--mjcf-out": mjcf_text, "--ur": friction_request}
     exports = {file: texts[option](found) for option, file in more.items()}
     found.save(arguments.out, overwrite=overwrite, more=exports)
+    shared: tuple[Path, ...] = ()
+    if arguments.gallery:
+        command = shlex.join(["ids", *(x for x in arguments.command_line if x != "--overwrite")])
+        shared = write_gallery(found, arguments.out, arguments.gallery, command)
     robot_file, series, model, uncertainty, figures, page = files
     names: list[Line] = [
         ("robot", f"{robot_file}: `ids evaluate RECORDING --robot {robot_file}`"),
@@ -185,8 +199,10 @@ def run(arguments: argparse.Namespace) -> None:
         ("figures", figures),
         ("for Python", series),
         ("also", list(more.values())),
+        ("gallery", shared),
     ]
-    show(arguments, found.numbers(), [*files, *more.values()], [*found.lines(), *names])
+    written = [*files, *more.values(), *shared]
+    show(arguments, found.numbers(), written, [*found.lines(), *names])
 
 
 def _robot(arguments: argparse.Namespace) -> Robot:
