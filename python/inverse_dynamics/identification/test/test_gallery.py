@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,16 +12,58 @@ import pytest
 import yaml
 from identified_arms import identification
 
-from inverse_dynamics import load_robot
+from inverse_dynamics import Solver, load_robot, robot_names
 from inverse_dynamics.identification.gallery import write_gallery
 from inverse_dynamics.identification.hold_out import HoldOut
+from inverse_dynamics.installation.ament import package_share
 
+MODELS = package_share("inverse_dynamics_robots") / "models"
+PAGE = (Path(__file__).parents[4] / "docs/robots.md").read_text(encoding="utf-8")
+GALLERY = [name for name in robot_names() if name.endswith("_identified")]
 SOURCE = "https://example.org/arm, recorded on 3 May 2026; licence CC-BY-4.0"
 
 
 def section(page: str, name: str) -> str:
     """Of a robot."""
     return page.partition(f"\n## {name}\n")[2].partition("\n## ")[0]
+
+
+def test_there_are_robots_and_each_has_its_section():
+    assert len(GALLERY) >= 8
+    assert sorted(re.findall(r"^## (\w+_identified)$", PAGE, re.MULTILINE)) == GALLERY
+
+
+@pytest.mark.parametrize("name", GALLERY)
+def test_a_robot_computes_and_states_what_it_is(name, ids):
+    robot = load_robot(name)
+    model = yaml.safe_load((MODELS / f"{name}.yaml").read_text(encoding="utf-8"))
+    joints = [joint for joint in model["joints"] if "mimic" not in joint]
+    q, qd, qdd = (
+        np.random.default_rng(1).uniform(
+            *np.array([j["seen"][key] for j in joints]).T, (20, len(joints))
+        )
+        for key in ("q", "qd", "qdd")
+    )
+    solver = Solver(name)
+    torques = solver.torques(q, qd, qdd)
+    assert np.isfinite(torques).all()
+    np.testing.assert_array_equal(Solver(model=name).torques(q, qd, qdd), torques)
+    assert list(solver.joint_names) == [joint["name"] for joint in joints]
+    assert np.abs(solver.friction_vector(qd, q=q)).max() > 0
+    assert all(joint["torque_deviation"] > 0 for joint in joints)
+    assert model["name"] == name
+    assert robot.source.strip() in model["source"]
+    shown = section(PAGE, name)
+    (command,) = re.findall(r"```bash\n(.*?)\n```", shown, re.DOTALL)
+    command = command.replace(" \\\n   ", "")
+    assert f"`{command}` on " in model["source"]
+    for joint in joints:  # the error that the page shows, too
+        (error,) = re.findall(rf"held out: [^;]*?{joint['name']} (\S+) N m", model["validity"])
+        row = next(row for row in shown.splitlines() if row.startswith(f"| {joint['name']} "))
+        assert float(row.split(" | ")[3]) == pytest.approx(float(error), rel=1e-3)
+    code, out, _ = ids("robots")
+    assert code == 0
+    assert re.search(rf"^{name} ", out, re.MULTILINE)
 
 
 @pytest.fixture

@@ -41,7 +41,7 @@ def test_verbs_options_values_robots_and_files_are_completed(completed):
     assert completed("ids evaluate --ac") == ["--accelerations"]
     assert completed("ids evaluate --accelerations lo") == ["low-pass"]
     assert completed("ids evaluate --robot ur10_r") == ["ur10_real"]
-    assert completed("ids evaluate --robot=panda_s") == ["panda_simulated"]
+    assert completed("ids evaluate --robot=panda_si") == ["panda_simulated"]
     assert completed("ids evaluate --robot my") == ["my_robot.yaml"]
     assert completed("ids evaluate rec") == ["recording.csv"]
 
