@@ -26,7 +26,7 @@ from inverse_dynamics.outputs.files import check_output_file, files_written_whol
 from inverse_dynamics.robots.robot_files import reference, robot_text
 from inverse_dynamics.robots.robots import RIGID_BODY
 from inverse_dynamics.show import palette
-from inverse_dynamics.show.plots import COMPUTED, MEASURED, save_figure, write_title
+from inverse_dynamics.show.plots import COMPUTED, MEASURED, check_formats, save_figure, write_title
 from inverse_dynamics.wording import shown
 
 if TYPE_CHECKING:
@@ -65,7 +65,10 @@ class GalleryFiles(NamedTuple):
 
 
 def check_gallery(robot: Robot, out: Path, gallery: Path, *, overwrite: bool = False) -> None:
-    """Raise OutputError unless write_gallery() may write there, RobotError for a robot without a source."""
+    """Raise OutputError unless write_gallery() may write there, RobotError for a robot without a source.
+
+    And MissingPackageError without matplotlib.
+    """
     if not re.fullmatch(r"[a-z]\w*_identified", out.stem, re.ASCII):
         raise OutputError(
             f"{out}: expected a name such as ur10e_identified.yaml, which the robot has in the gallery: small "
@@ -76,6 +79,7 @@ def check_gallery(robot: Robot, out: Path, gallery: Path, *, overwrite: bool = F
             f"robot {robot.name}: source: expected where the recordings are published, when they were made, and their "
             f"licence, got {shown(robot.source) if robot.source else 'none'}; state `source:` in the run configuration"
         )
+    check_formats(("png",))
     files = GalleryFiles.of(out, gallery)
     for file in {*files} - {files.page}:
         check_output_file(file, overwrite=overwrite, inputs=robot.files)
