@@ -30,3 +30,21 @@ PENDULUM = """
   <joint name="swing" type="continuous"><parent link="base"/><child link="arm"/>
     <axis xyz="0 1 0"/></joint>
 </robot>"""
+
+# A model of that robot whose friction is presliding alone: 2 N m that turn round over 0.01 rad.
+PRESLIDING = """
+schema: 2
+name: pendulum
+source: worked by hand
+validity: a test
+units: SI
+geometry: placements
+gravity: [0, 0, -9.81]
+parameters: about_center_of_mass
+joints:
+  - name: swing
+    type: revolute
+    placement: {xyz: [0, 0, 0], rpy: [0, 0, 0], axis: [0, 1, 0]}
+    friction: {law: smooth_coulomb, fv: 0, fc: 0, width: 0.001, fm: 2, distance: 0.01}
+    link: [2, 0, 0, -0.5, 0.1, 0, 0, 0.1, 0, 0.1]
+"""

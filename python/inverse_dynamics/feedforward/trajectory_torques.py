@@ -166,7 +166,12 @@ def trajectory_torques(
     if not any(len(time) for time, *_ in states):
         raise BagError(f"{path}: expected points of a trajectory, got none")
     progress("computing", 0, len(states))
-    torques = [solver.torques(*state) if len(time) else state[0] for time, state, _ in states]
+    torques = [
+        solver.torques(*state) + solver.friction_state().along(*state[:2])
+        if len(time)
+        else state[0]
+        for time, state, _ in states
+    ]
     for k, trajectory in enumerate(trajectories):
         _add_wrenches(trajectory, solver, states[k][1][0], torques[k])
     for number, computed in enumerate(torques, 1):

@@ -244,15 +244,12 @@ def estimate_payload(
 
 
 def samples_of(evaluation: Evaluation) -> Samples:
-    """Those without a fault, in ascending time."""
+    """Those without a fault, in ascending time; `measured` without what friction remembers of the motion."""
     kept, log = evaluation.samples.kept, evaluation.log
-    return Samples(
-        evaluation.time[kept],
-        log.q[kept],
-        log.qd[kept],
-        evaluation.qdd[kept],
-        torques_with_gravity(evaluation)[kept],
-    )
+    q, qd = log.q[kept], log.qd[kept]
+    remembered = evaluation.arm.solver.friction_state().along(q, qd)
+    measured = torques_with_gravity(evaluation)[kept] - remembered
+    return Samples(evaluation.time[kept], q, qd, evaluation.qdd[kept], measured)
 
 
 def empty_run(samples: Samples, solver: Solver) -> PayloadOptions:

@@ -24,7 +24,7 @@ from example_recordings import (
     write_table,
     write_trajectories,
 )
-from example_robots import JOINTS, URDF
+from example_robots import JOINTS, PRESLIDING, RIGID_BODY, URDF
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, Reader, StoragePlugin, Writer
 from rosbags.rosbag2.writer import zstd
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -495,6 +495,19 @@ def test_a_plan_of_two_arms_in_any_order_gets_the_torques_of_the_tree(tmp_path):
     found = trajectory_torques(tmp_path / "plan.csv", tree)
     assert found.joint_names == tree.joint_names
     assert np.abs(found.torques[0] - table["effort"])[100:-100].max() < 1e-3
+
+
+def test_each_trajectory_has_the_friction_of_its_own_motion(tmp_path):
+    (tmp_path / "pendulum.yaml").write_text(PRESLIDING)
+    swing = Solver(RIGID_BODY, model=str(tmp_path / "pendulum.yaml"))
+    time, *states = (values[:, :1] if values.ndim == 2 else values for values in plan())
+    stamps = np.round(time * 1e9).astype(int).tolist()
+    points = [(t, *arrays, []) for t, *arrays in zip(stamps, *states, strict=True)]
+    file = write_trajectories(tmp_path / "bag", [trajectory(("swing",), points)] * 2)
+    found = trajectory_torques(file, swing)
+    without = swing.torques(*states)
+    for torques in found.torques:  # from rest to rest
+        assert torques[[0, -1]] - without[[0, -1]] == pytest.approx(np.array([[0.0], [2.0]]))
 
 
 WRENCH_TRAJECTORY = "control_msgs/msg/JointWrenchTrajectory"

@@ -14,6 +14,7 @@ import two_arms
 import yaml
 from command_line import fails
 from example_recordings import write_motion
+from example_robots import PRESLIDING, RIGID_BODY
 from simulation_arms import joint, link, robot
 
 from inverse_dynamics import Solver, evaluate, load_robot
@@ -34,6 +35,7 @@ from inverse_dynamics.payload.payload import (
     empty_run,
     estimate_payload,
     fit_payload,
+    samples_of,
     with_load,
 )
 from inverse_dynamics.robots.descriptions import read_description
@@ -227,6 +229,17 @@ def test_a_load_is_found_beside_one_that_is_known(tmp_path):
     found = estimate_payload(file, "panda_simulated", parameters=tool)
     assert found.estimate.mass == pytest.approx(1.3, abs=0.03)
     assert any(note.startswith("the load comes on top of the `payload`") for note in found.notes)
+
+
+def test_what_friction_remembers_is_no_load(tmp_path):
+    (tmp_path / "pendulum.yaml").write_text(PRESLIDING)
+    swing = Solver(RIGID_BODY, model=str(tmp_path / "pendulum.yaml"))
+    time, *states = (values[..., :1] if values.ndim == 2 else values for values in motion())
+    measured = swing.torques(*states) + swing.friction_state().along(*states[:2])
+    assert np.ptp(measured - swing.torques(*states)) > 3.0
+    file = table(tmp_path / "swing.csv", Samples(time, *states, measured), swing.joint_names)
+    found = samples_of(evaluate(file, swing))
+    assert found.residual(swing) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_the_solver_is_left_as_it_was():
