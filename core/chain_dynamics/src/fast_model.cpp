@@ -26,6 +26,7 @@ using fast::ManyKernels;
 using fast::Robot;
 
 static_assert(FastModel::kMaxJoints == fast::kMaxJoints);
+static_assert(kMostFrictionLaws == fast::kMaxLaws);
 
 /// Shift [rad/s] of a step without any: velocities of 1e-100 rad/s would make the kernels' powers of
 /// the exponent denormal. It is nothing beside one.
@@ -125,6 +126,7 @@ struct FastModel::Data {
     if (!model.friction.empty() && !robot.load_friction) {
       Model friction_alone(model.chain);
       friction_alone.friction = model.friction;
+      friction_alone.friction_places = model.friction_places;
       friction_alone.coupling = model.coupling;
       robot.friction_alone = std::make_unique<const FastModel>(
           friction_alone, robot.branches.front().fast->instructionSet());
@@ -170,13 +172,16 @@ struct FastModel::Data {
     if (laws.empty()) return;
     coupling = model.coupling.transpose();
     robot.changing_steps = coupling.size() > 0;
-    friction.resize(fast::kFrictionNumbers * stride, 0.0);
+    const std::size_t law_stride = padded(laws.size());
+    robot.laws = static_cast<int>(laws.size());
+    robot.law_stride = static_cast<int>(law_stride);
+    friction.resize(fast::kFrictionNumbers * law_stride, 0.0);
     for (std::size_t j = 0; j < laws.size(); ++j) {
       FrictionForm form = formOf(laws[j]);
       if (form.alpha != 0 && form.shift == 0) form.shift = kNoDenormals;
       const double* const numbers = &form.fv;
       for (std::size_t k = 0; k < fast::kFrictionNumbers; ++k)
-        friction[k * stride + j] = numbers[k];
+        friction[k * law_stride + j] = numbers[k];
       robot.load_friction = robot.load_friction || form.fl != 0;
       robot.changing_steps = robot.changing_steps || form.fl != 0 || form.fs != 0;
     }
@@ -213,7 +218,7 @@ struct FastModel::Data {
   std::vector<const Body*> row_pointers;
   std::vector<double> row_lanes;
   std::vector<double> friction;
-  OwnedMatrix coupling;  // [motor][joint]
+  OwnedMatrix coupling;  // [law][joint]
   FastBranches robot{};
   Kernels kernels{};  // of a mechanism
   ManyKernels many{};

@@ -176,9 +176,8 @@ Mechanism withLinks(const Mechanism& mechanism, const std::vector<LinkParameters
   });
   for (std::size_t c = 0; c < rotors.size(); ++c) {
     if (placed[c] || rotors[c] == 0) continue;
-    throw ModelError(where(mechanism),
-                     "rotor inertia of coordinate " + coordinates.joints()[c].name,
-                     "zero, as no joint follows it alone", std::to_string(rotors[c]), "");
+    result.motor_inertia.resize(rotors.size(), 0.0);
+    result.motor_inertia[c] = rotors[c];
   }
   for (Branch& branch : result.branches) {
     branch.chain = withParts(branch.chain, parts[&branch].first, parts[&branch].second);

@@ -60,6 +60,8 @@ class OwnTorques {
   Eigen::Index springs_, motors_ = 0;
 };
 
+Eigen::Index lawCount(const Model& model) { return static_cast<Eigen::Index>(model.friction.size()); }
+
 /// Adds the inertia that motors have to the diagonal of H.
 void addMotors(const Model& model, MatrixRef H) {
   for (Eigen::Index j = 0; j < model.motor_inertia.size(); ++j) H(j, j) += model.motor_inertia[j];
@@ -69,16 +71,13 @@ void addMotors(const Model& model, MatrixRef H) {
 class Load {
  public:
   Load(const Model& model, const ConstVectorRef& q)
-      : memory_(model.chain.jointCount()), g(&memory_[0], model.chain.jointCount()) {
-    if (frictionDependsOnLoad(model)) {
-      gravityVector(model, q, g);
-    } else {
-      g.setZero();
-    }
+      : memory_(lawCount(model)), g(&memory_[0], lawCount(model)) {
+    g.setZero();
+    if (frictionDependsOnLoad(model)) gravityVector(model, q, g.head(model.chain.jointCount()));
   }
 
  private:
-  Scratch<double> memory_;
+  Scratch<double, kMostFrictionLaws> memory_;
 
  public:
   Eigen::Map<Eigen::VectorXd> g;
@@ -95,17 +94,20 @@ void multiply(const Matrix& C, const ConstVectorRef& x, VectorRef result) {
   }
 }
 
-/// Velocities of what has friction: of motors, or of joints.
-class MotorVelocities {
+/// Velocities at which laws of friction act: those of joints, or `coupling qd`.
+class LawVelocities {
  public:
-  MotorVelocities(const Model& model, const ConstVectorRef& qd)
-      : memory_(qd.size()), v(&memory_[0], qd.size()) {
-    v = qd;
-    if (model.coupling.size() > 0) multiply(model.coupling, qd, v);
+  LawVelocities(const Model& model, const ConstVectorRef& qd)
+      : memory_(lawCount(model)), v(&memory_[0], lawCount(model)) {
+    if (model.coupling.size() > 0) {
+      multiply(model.coupling, qd, v);
+    } else {
+      v = qd;
+    }
   }
 
  private:
-  Scratch<double> memory_;
+  Scratch<double, kMostFrictionLaws> memory_;
 
  public:
   Eigen::Map<Eigen::VectorXd> v;
@@ -113,6 +115,12 @@ class MotorVelocities {
 
 std::string nameOf(const Model& model, std::size_t joint) {
   return model.chain.joints()[joint].name;
+}
+
+/// Of a law: that of its joint, or of its place.
+std::string lawName(const Model& model, std::size_t law) {
+  const std::size_t n = model.chain.joints().size();
+  return law < n ? "joint " + nameOf(model, law) : model.friction_places[law - n];
 }
 
 /// A part of the model that is there for no joint or for all.
@@ -125,34 +133,50 @@ void checkCount(const Model& model, const std::string& what, std::size_t count) 
 
 void checkFrictionLaws(const Model& model) {
   const std::string where = "model " + model.name;
-  if (!model.friction.empty() && model.friction.size() != model.chain.joints().size()) {
+  const std::size_t n = model.chain.joints().size(), places = model.friction_places.size();
+  if (places > 0 && (model.friction.size() != n + places || model.coupling.size() == 0 ||
+                     lawCount(model) > kMostFrictionLaws)) {
     throw ModelError(where, "friction",
-                     "no law, or one per joint (" + std::to_string(model.chain.jointCount()) + ")",
-                     std::to_string(model.friction.size()), "");
+                     "a law and a row of coupling for each of " + std::to_string(n) + " joints and " +
+                         std::to_string(places) + " places, of at most " +
+                         std::to_string(kMostFrictionLaws) + " laws",
+                     std::to_string(model.friction.size()) + " laws, " +
+                         std::to_string(model.coupling.rows()) + " rows",
+                     "");
   }
-  for (std::size_t j = 0; j < model.friction.size(); ++j) {
-    checkFriction(model.friction[j], where + ": friction of joint " + nameOf(model, j));
+  if (places == 0 && !model.friction.empty() && model.friction.size() != n) {
+    throw ModelError(where, "friction", "no law, or one per joint (" + std::to_string(n) + ")",
+                     std::to_string(model.friction.size()), "name further laws in friction_places");
+  }
+  for (std::size_t k = 0; k < model.friction.size(); ++k) {
+    checkFriction(model.friction[k], where + ": friction of " + lawName(model, k));
   }
 }
 
 void checkCoupling(const Model& model) {
-  const auto n = static_cast<Eigen::Index>(model.friction.size());
+  const Eigen::Index laws = lawCount(model), n = model.chain.jointCount();
   const OwnedMatrix& C = model.coupling;
-  if (C.size() == 0 || n == 0) return;
+  if (C.size() == 0 || laws == 0) return;
   const std::string where = "model " + model.name;
-  if (C.rows() != n || C.cols() != n || !C.allFinite()) {
-    const std::string size = std::to_string(n);
-    throw ModelError(where, "coupling", size + " x " + size + " finite numbers",
-                     std::to_string(C.rows()) + " x " + std::to_string(C.cols()) +
-                         (C.allFinite() ? "" : ", not all finite"),
-                     "state a row per motor, of a number per joint, or no coupling");
+  if (C.rows() != laws || C.cols() != n || !C.allFinite()) {
+    throw ModelError(
+        where, "coupling", std::to_string(laws) + " x " + std::to_string(n) + " finite numbers",
+        std::to_string(C.rows()) + " x " + std::to_string(C.cols()) +
+            (C.allFinite() ? "" : ", not all finite"),
+        "state a row per law of friction, of a number per joint, or no coupling");
   }
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const auto joint = static_cast<std::size_t>(j);
-    if (!dependsOnLoad(model.friction[joint]) || C.row(j) == Eigen::RowVectorXd::Unit(n, j))
+  for (Eigen::Index k = 0; k < laws; ++k) {
+    const auto law = static_cast<std::size_t>(k);
+    if (k >= n && C.row(k).isZero(0)) {
+      throw ModelError(where, "coupling of " + lawName(model, law), "a number other than zero",
+                       "none", "state which joints the friction acts on, or leave its law out");
+    }
+    if (!dependsOnLoad(model.friction[law]) ||
+        (k < n && C.row(k) == Eigen::RowVectorXd::Unit(n, k))) {
       continue;
-    throw ModelError(where, "friction of joint " + nameOf(model, joint),
-                     "no load term fl, as its motor moves other joints too", "one",
+    }
+    throw ModelError(where, "friction of " + lawName(model, law),
+                     "no load term fl, as it acts on other joints too", "one",
                      "take Coulomb friction fc, or no coupling");
   }
 }
@@ -334,13 +358,13 @@ void frictionVector(const Model& model, const ConstVectorRef& q, const ConstVect
   if (model.friction.empty()) {
     f = 0.0 * qd;  // keeps a NaN
   } else {
-    const MotorVelocities motors(model, qd);
-    frictionVector(model.friction, motors.v, Load(model, q).g, f);
-    if (model.coupling.size() == 0) return;
-    Scratch<double> memory(f.size());
-    Eigen::Map<Eigen::VectorXd> of_motors(&memory[0], f.size());
-    of_motors = f;
-    multiply(model.coupling.transpose(), of_motors, f);
+    const LawVelocities laws(model, qd);
+    const Load load(model, q);
+    if (model.coupling.size() == 0) return frictionVector(model.friction, laws.v, load.g, f);
+    Scratch<double, kMostFrictionLaws> memory(lawCount(model));
+    Eigen::Map<Eigen::VectorXd> of_laws(&memory[0], lawCount(model));
+    frictionVector(model.friction, laws.v, load.g, of_laws);
+    multiply(model.coupling.transpose(), of_laws, f);
   }
 }
 
@@ -349,12 +373,10 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
   if (model.friction.empty()) return;
   const Eigen::Index n = model.chain.jointCount();
   const Load load(model, q);
-  const MotorVelocities motors(model, qd);
+  const LawVelocities laws(model, qd);
   // What saturates has at infinity the slope that it has far out; NaN stays.
-  const auto velocity = [&](Eigen::Index j) {
-    return std::clamp<double>(motors.v[j], -1e100, 1e100);
-  };
-  for (Eigen::Index j = 0; j < n; ++j) {
+  const auto velocity = [&](Eigen::Index j) { return std::clamp<double>(laws.v[j], -1e100, 1e100); };
+  for (Eigen::Index j = 0; j < lawCount(model); ++j) {
     const FrictionLaw& law = model.friction[static_cast<std::size_t>(j)];
     const double slope = frictionSlope(law, velocity(j), load.g[j]);
     if (model.coupling.size() == 0) {

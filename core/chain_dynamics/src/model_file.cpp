@@ -51,14 +51,22 @@ Chain makeChain(const std::string& name, const std::vector<JointEntry>& entries,
   return chain.withWarnings(std::move(warnings));
 }
 
-void addCoupling(const std::vector<JointEntry>& entries, Model& model) {
+void addCoupling(const std::vector<JointEntry>& entries, const std::vector<FrictionPlace>& places,
+                 Model& model) {
   const Eigen::Index n = model.chain.jointCount();
-  Eigen::MatrixXd coupling = Eigen::MatrixXd::Identity(n, n);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const std::vector<double>& row = entries[static_cast<std::size_t>(j)].coupling;
-    if (!row.empty()) coupling.row(j) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), n);
+  Eigen::MatrixXd coupling =
+      Eigen::MatrixXd::Identity(n + static_cast<Eigen::Index>(places.size()), n);
+  const auto set = [&](Eigen::Index k, const std::vector<double>& row) {
+    if (!row.empty()) coupling.row(k) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), n);
+  };
+  for (Eigen::Index j = 0; j < n; ++j) set(j, entries[static_cast<std::size_t>(j)].coupling);
+  Eigen::Index next = n;
+  for (const FrictionPlace& place : places) {
+    set(next++, place.coupling);
+    model.friction.push_back(place.law);
+    model.friction_places.push_back(place.name);
   }
-  if (!coupling.isIdentity(0)) model.coupling = coupling;
+  if (!places.empty() || !coupling.isIdentity(0)) model.coupling = coupling;
 }
 
 void addSprings(const std::vector<JointEntry>& entries, Model& model) {
@@ -75,10 +83,9 @@ void addSprings(const std::vector<JointEntry>& entries, Model& model) {
 }
 
 /// Everything beyond the chain, in torques.
-void addIdentified(const std::vector<JointEntry>& entries, const Conventions& conventions,
-                   Model& model) {
+void addIdentified(const std::vector<JointEntry>& entries, const std::vector<FrictionPlace>& places,
+                   const Conventions& conventions, Model& model) {
   const bool has_deviation = !entries.front().torque_deviation.empty();
-  addCoupling(entries, model);
   addSprings(entries, model);
   model.drive_gains.resize(conventions.gains ? model.chain.jointCount() : 0);
   model.torque_deviation.resize(has_deviation ? model.chain.jointCount() : 0);
@@ -106,11 +113,13 @@ void addIdentified(const std::vector<JointEntry>& entries, const Conventions& co
       }
     }
   }
+  addCoupling(entries, places, model);
 }
 
 Model makeModel(const std::string& file, const std::string& name,
                 const std::vector<JointEntry>& entries, const Conventions& conventions,
-                const Eigen::Vector3d& gravity, const std::vector<TipEntry>& tips) {
+                const Eigen::Vector3d& gravity, const std::vector<TipEntry>& tips,
+                const std::vector<FrictionPlace>& places) {
   try {
     const auto chain = [&](const std::vector<JointEntry>& joints,
                            const Transform<double>& X_U_tip) {
@@ -118,7 +127,7 @@ Model makeModel(const std::string& file, const std::string& name,
     };
     Model model = conventions.tree ? Model(treeOf(name, entries, tips, gravity, chain))
                                    : Model(chain(entries, tips.front().X_U_tip));
-    addIdentified(coordinatesOf(entries), conventions, model);
+    addIdentified(coordinatesOf(entries), places, conventions, model);
     checkModel(model);
     return model;
   } catch (const ModelError& error) {
@@ -218,10 +227,14 @@ Model readModel(const LocatedValue& document) {
     map.rejectOthers();
   }
   const std::vector<JointEntry> entries = readJoints(file.required("joints"), conventions);
+  std::vector<FrictionPlace> places;
+  if (const auto more = file.optional("friction_at")) {
+    places = readFrictionPlaces(*more, conventions, coordinatesOf(entries));
+  }
   const auto checks = file.optional("checks");
   file.rejectOthers();
 
-  Model model = makeModel(document.file(), name, entries, conventions, gravity, tips);
+  Model model = makeModel(document.file(), name, entries, conventions, gravity, tips, places);
   model.source = source;
   model.validity = validity;
   if (checks) verifyChecks(checks->map(), model);

@@ -280,15 +280,21 @@ JointEntry readJoint(const LocatedValue& value, const Conventions& conventions,
   const LocatedValue named = value.named("joint " + entry.joint.name);
   entry.where = named.where();
   LocatedMap map = named.map();
+  if (const auto motor = conventions.tree ? map.optional("motor") : std::nullopt) {
+    entry.is_motor = motor->truth();
+  }
   const bool placed = conventions.geometry == Geometry::kPlacements;
-  map.expect({"name", "type", placed ? "placement" : "dh"});
+  map.expect({"name", "type"});
+  if (!entry.is_motor) map.expect({placed ? "placement" : "dh"});
   map.required("name");
   entry.joint.type = std::vector<JointType>{
       JointType::kRevolute, JointType::kContinuous,
       JointType::kPrismatic}[map.required("type").choice({"revolute", "continuous", "prismatic"})];
 
   JointGeometry geometry;
-  if (placed) {
+  if (entry.is_motor) {
+    // of no place
+  } else if (placed) {
     geometry = readPlacement(map.required("placement").map());
   } else {
     geometry = readDH(map.required("dh").map(), conventions.geometry);
@@ -302,7 +308,7 @@ JointEntry readJoint(const LocatedValue& value, const Conventions& conventions,
     entry.joint.rotor_inertia = rotor_inertia->number();
   }
   if (const auto spring = map.optional("spring")) readSpring(*spring, conventions.schema, entry);
-  if (conventions.tree) readPlaceInTree(map, entry);
+  if (conventions.tree && !entry.is_motor) readPlaceInTree(map, entry);
   if (conventions.gains && entry.mimics.empty()) {
     entry.drive_gain.push_back(map.required("drive_gain").number());
   } else if (const auto gain = map.optional("drive_gain")) {
@@ -314,7 +320,7 @@ JointEntry readJoint(const LocatedValue& value, const Conventions& conventions,
     if (const auto coupling = map.optional("coupling")) entry.coupling = coupling->numbers(joints);
   }
   readExperience(map, conventions.schema, entry);
-  readParameters(map, conventions, joints, entry);
+  if (!entry.is_motor) readParameters(map, conventions, joints, entry);
   if (const auto first_moment = map.optional("gravity_first_moment")) {
     entry.gravity_first_moment.push_back(readVector(*first_moment));
   }
@@ -383,6 +389,37 @@ std::vector<JointEntry> readJoints(const LocatedValue& value, const Conventions&
                      "gravity has the masses of link");
   }
   return all;
+}
+
+std::vector<FrictionPlace> readFrictionPlaces(const LocatedValue& value,
+                                              const Conventions& conventions,
+                                              const std::vector<JointEntry>& coordinates) {
+  if (conventions.schema < 2) refuseNewer(value, "no such key");
+  if (coordinates.front().friction.empty()) {
+    value.fail("friction of each joint beside it", "where a joint has no friction, write {law: none}");
+  }
+  if (conventions.friction_level == Level::kCurrent) {
+    value.fail("no such key, as friction is in currents", "state friction as torque");
+  }
+  std::vector<FrictionPlace> places;
+  for (const LocatedValue& one : value.entries()) {
+    const std::string name = one.map().required("name").text();
+    LocatedMap map = one.named(name).map();
+    map.expect({"name", "velocity", "friction"});
+    map.required("name");
+    FrictionPlace& place = places.emplace_back();
+    place.where = one.named(name).where();
+    place.name = name;
+    LocatedMap velocity = map.required("velocity").map();
+    for (const JointEntry& coordinate : coordinates) {
+      const auto factor = velocity.optional(coordinate.joint.name);
+      place.coupling.push_back(factor ? factor->number() : 0.0);
+    }
+    velocity.rejectOthers();
+    place.law = readFriction(map.required("friction").map(), conventions.schema);
+    map.rejectOthers();
+  }
+  return places;
 }
 
 }  // namespace v2

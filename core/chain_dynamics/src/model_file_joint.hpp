@@ -38,6 +38,13 @@ struct MimicEntry {
   double multiplier = 1;
 };
 
+/// Friction at a place beside the joints.
+struct FrictionPlace {
+  std::string where, name;
+  FrictionLaw law;
+  std::vector<double> coupling;  // n
+};
+
 /// One joint of a file, with the link it moves. The file's link frame is U, the chain's is E.
 struct JointEntry {
   std::string where;  // file, line and name, as error texts begin
@@ -53,6 +60,7 @@ struct JointEntry {
   std::vector<double> torque_deviation;                    // one, or none
   std::vector<SeenRange> seen;                             // one, or none
   std::string parent;              // of a tree: the joint that moves the link it is on; empty: none
+  bool is_motor = false;           // which moves no link of its own
   std::vector<MimicEntry> mimics;  // none: it is a coordinate
   double offset = 0;               // where it stands if these stand at zero; rad; m
 };
@@ -60,6 +68,11 @@ struct JointEntry {
 /// The joints; of a chain from root to tip. What one has of row, friction and so on, all have that mimic no
 /// other.
 std::vector<JointEntry> readJoints(const LocatedValue& value, const Conventions& conventions);
+
+/// @param coordinates  those of coordinatesOf().
+std::vector<FrictionPlace> readFrictionPlaces(const LocatedValue& value,
+                                              const Conventions& conventions,
+                                              const std::vector<JointEntry>& coordinates);
 
 /// Those that mimic no other.
 std::vector<JointEntry> coordinatesOf(const std::vector<JointEntry>& entries);

@@ -44,9 +44,11 @@ class Tree {
   /// From the root to the joint that a tip names.
   Joints pathTo(const TipEntry& tip) const {
     Joints path{placeOf(tip.joint, tip.where, "joint")};
+    refuseMotor(path.back(), tip.where, "joint");
     while (!entries_[path.back()].parent.empty()) {
       const JointEntry& entry = entries_[path.back()];
       path.push_back(placeOf(entry.parent, entry.where, "parent"));
+      refuseMotor(path.back(), entry.where, "parent");
       if (path.size() <= entries_.size()) continue;
       throw ModelError(entry.where, "parent", "a joint that isn't below this one", entry.parent,
                        "begin at a joint on the root link, which has no parent");
@@ -84,6 +86,12 @@ class Tree {
   }
 
  private:
+  void refuseMotor(std::size_t i, const std::string& where, const char* key) const {
+    if (!entries_[i].is_motor) return;
+    throw ModelError(where, key, "a joint that moves a link", "the motor " + entries_[i].joint.name,
+                     "");
+  }
+
   std::size_t placeOf(const std::string& name, const std::string& where, const char* key) const {
     const auto found = places_.find(name);
     if (found != places_.end()) return found->second;
@@ -124,14 +132,22 @@ Mechanism treeOf(const std::string& name, const std::vector<JointEntry>& entries
                  const MakeChain& make_chain) {
   Tree tree(entries);
   std::vector<Joint> coordinates;
+  std::vector<double> motor_inertia;
   for (const JointEntry& entry : coordinatesOf(entries)) {
     Joint& joint = coordinates.emplace_back(entry.joint);
     joint.placement = Transform<double>::identity();
-    joint.rotor_inertia = 0;
+    motor_inertia.push_back(entry.is_motor ? joint.rotor_inertia : 0);
+    joint.rotor_inertia = motor_inertia.back();
+  }
+  std::vector<bool> seen;
+  std::vector<Index> link_numbers;
+  Index links = 0;
+  for (const JointEntry& entry : entries) {
+    seen.push_back(entry.is_motor);
+    link_numbers.push_back(entry.is_motor ? -1 : links++);
   }
   std::vector<Branch> branches;
   std::vector<std::string> warnings;
-  std::vector<bool> seen(entries.size(), false);
   for (const TipEntry& tip : tips) {
     std::vector<JointEntry> path;
     std::vector<Follow> S;
@@ -153,7 +169,7 @@ Mechanism treeOf(const std::string& name, const std::vector<JointEntry>& entries
         addTurns(leader, entry.joint, factor);
       }
       s.push_back(followed.position);
-      link.push_back(static_cast<Index>(i));
+      link.push_back(link_numbers[i]);
     }
     branches.push_back(
         {tip.name, make_chain(path, tip.X_U_tip), std::move(S), std::move(s), std::move(link)});
@@ -166,7 +182,10 @@ Mechanism treeOf(const std::string& name, const std::vector<JointEntry>& entries
   }
   const std::vector<LinkParameters> none(coordinates.size(), LinkParameters::zero());
   return {Chain(name, std::move(coordinates), none, gravity).withWarnings(std::move(warnings)),
-          std::move(branches)};
+          std::move(branches),
+          std::any_of(motor_inertia.begin(), motor_inertia.end(), [](double I) { return I != 0; })
+              ? motor_inertia
+              : std::vector<double>()};
 }
 
 }  // namespace v2

@@ -102,17 +102,17 @@ std::string limitsLine(const JointLimits& limits) {
 }
 
 /// With the optional coefficients that aren't zero.
-std::string frictionLine(const FrictionLaw& law) {
+std::string frictionText(const FrictionLaw& law) {
   return std::visit(
       [](const auto& named) {
-        std::string text = std::string("    friction: {law: ") + named.kName;
+        std::string text = std::string("friction: {law: ") + named.kName;
         for (const auto& coefficient : named.coefficients()) {
           const double value = named.*coefficient.value;
           if (coefficient.required || value != 0) {
             text += std::string(", ") + coefficient.name + ": " + number(value);
           }
         }
-        return text + "}\n";
+        return text + "}";
       },
       law);
 }
@@ -145,7 +145,7 @@ std::string identifiedLines(const Model& model, std::size_t j, const std::string
     text += "    spring: {stiffness: " + number(model.stiffness[k]) +
             ", rest: " + number(model.rest[k]) + "}\n";
   }
-  if (!model.friction.empty()) text += frictionLine(model.friction[j]);
+  if (!model.friction.empty()) text += "    " + frictionText(model.friction[j]) + "\n";
   if (model.coupling.size() > 0 && !model.friction.empty()) {
     text += "    coupling: " + list(model.coupling.row(static_cast<Eigen::Index>(j))) + "\n";
   }
@@ -206,6 +206,32 @@ std::vector<std::pair<const Branch*, std::size_t>> movesOf(const std::vector<Bra
   return moves;
 }
 
+/// A coordinate that is no joint, but moves some.
+bool isMotor(const Model& model, std::size_t coordinate) {
+  const std::string& name = model.chain.joints()[coordinate].name;
+  for (const Branch& branch : model.branches) {
+    for (const Joint& joint : branch.chain.joints()) {
+      if (joint.name == name) return false;
+    }
+  }
+  return true;
+}
+
+/// Those from `next` on that stand before a joint or at the end; `next` is then the joint's.
+std::string motorLines(const Model& model, std::size_t& next) {
+  std::string text;
+  for (; next < model.chain.joints().size() && isMotor(model, next); ++next) {
+    const Joint& joint = model.chain.joints()[next];
+    text += "  - name: " + quoted(joint.name) + "\n    motor: true\n    type: " +
+            typeText(joint.type) + "\n" + limitsLine(joint.limits) +
+            rotorLine(model.motor_inertia.size() == 0
+                          ? 0.0
+                          : model.motor_inertia[static_cast<Eigen::Index>(next)]) +
+            identifiedLines(model, next, "");
+  }
+  return text;
+}
+
 std::string treeLines(const Model& model) {
   std::string text = "tips:\n";
   for (const Branch& branch : model.branches) {
@@ -215,13 +241,17 @@ std::string treeLines(const Model& model) {
   }
   text += "\njoints:\n";
   const std::vector<LinkParameters> links = linksOf({model.chain, model.branches});
+  std::size_t next = 0;
   for (const auto& [branch, i] : movesOf(model.branches)) {
     const std::vector<Joint>& joints = branch->chain.joints();
     const std::string link =
         "    link: " + list(links[static_cast<std::size_t>(branch->link[i])]) + "\n";
     Joint joint = joints[i];
     const auto coordinate = coordinateOf(model, *branch, i);
-    if (coordinate) {  // it may turn less far for those that follow it, and may have a motor
+    if (coordinate) {
+      text += motorLines(model, next);
+      ++next;
+      // it may turn less far for those that follow it, and may have a motor
       joint.type = model.chain.joints()[*coordinate].type;
       joint.limits = model.chain.joints()[*coordinate].limits;
       if (model.motor_inertia.size() > 0) {
@@ -234,12 +264,16 @@ std::string treeLines(const Model& model) {
     text += rotorLine(joint.rotor_inertia);
     text += coordinate ? identifiedLines(model, *coordinate, link) : link + "\n";
   }
-  return text;
+  return text + motorLines(model, next);
 }
 
 /// Refuses coordinates that aren't joints, in the order of the links that they move.
 void checkWritableTree(const Model& model) {
   std::size_t next = 0;
+  const auto skip_motors = [&] {
+    while (next < model.chain.joints().size() && isMotor(model, next)) ++next;
+  };
+  skip_motors();
   for (const auto& [branch, i] : movesOf(model.branches)) {
     const auto coordinate = coordinateOf(model, *branch, i);
     if (!coordinate) continue;
@@ -251,6 +285,7 @@ void checkWritableTree(const Model& model) {
                           S[0].coordinate == static_cast<Eigen::Index>(*coordinate);
     if (is_joint && *coordinate == next) {
       ++next;
+      skip_motors();
       continue;
     }
     break;
@@ -259,6 +294,26 @@ void checkWritableTree(const Model& model) {
   throw ModelError("model " + model.name, "coordinate " + model.chain.joints()[next].name,
                    "a joint, in the order of the links that these move", "another",
                    "a model file states no other");
+}
+
+/// Friction beside the joints.
+std::string frictionPlaceLines(const Model& model) {
+  if (model.friction.empty() || model.friction_places.empty()) return "";
+  std::string text = "friction_at:\n";
+  const std::size_t n = model.chain.joints().size();
+  for (std::size_t k = n; k < model.friction.size(); ++k) {
+    std::string velocity;
+    for (std::size_t j = 0; j < n; ++j) {
+      const double factor =
+          model.coupling(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j));
+      if (factor == 0) continue;
+      velocity += (velocity.empty() ? "" : ", ") + quoted(model.chain.joints()[j].name) + ": " +
+                  number(factor);
+    }
+    text += "  - name: " + quoted(model.friction_places[k - n]) + "\n    velocity: {" + velocity +
+            "}\n    " + frictionText(model.friction[k]) + "\n";
+  }
+  return text + "\n";
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -323,10 +378,12 @@ std::string modelFileText(const Model& model) {
       (model.drive_gains.size() > 0 ? "levels: {parameters: torque, friction: torque}\n" : "") +
       "\ngeometry: placements\ngravity: " + list(model.chain.gravity()) +
       "\nparameters: about_origin\n";
-  if (!model.branches.empty()) return text + treeLines(model) + checkLines(model);
+  if (!model.branches.empty()) {
+    return text + treeLines(model) + frictionPlaceLines(model) + checkLines(model);
+  }
   text += "tip: {" + pose(model.chain.tip()) + "}\n\njoints:\n";
   for (std::size_t j = 0; j < model.chain.joints().size(); ++j) text += jointLines(model, j);
-  return text + checkLines(model);
+  return text + frictionPlaceLines(model) + checkLines(model);
 }
 
 }  // namespace v2

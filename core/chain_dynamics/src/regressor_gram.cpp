@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,12 +51,35 @@ RegressorGram::RegressorGram(Index joints, Index own_columns)
     : RegressorGram(suffixes(joints), joints, own_columns) {}
 
 RegressorGram::RegressorGram(std::vector<std::vector<int>> moved, Index links, Index own_columns)
-    : moved_(std::move(moved)), links_(links), own_columns_(own_columns) {
+    : moved_(std::move(moved)),
+      links_(links),
+      own_columns_(own_columns),
+      own_unknowns_(own_columns * joints()) {
   if (own_columns < 0) {
     throw ModelError("Gram matrix of the regressor", "own columns", "0 or more",
                      std::to_string(own_columns), "");
   }
   sums_.resize(static_cast<std::size_t>(firstSum(joints())), 0.0);
+}
+
+void RegressorGram::share(std::vector<std::vector<int>> unknowns) {
+  std::set<int> found;
+  for (const std::vector<int>& of_joint : unknowns) {
+    requireSize("own columns with an unknown", own_columns_, 1, static_cast<Index>(of_joint.size()), 1);
+    found.insert(of_joint.begin(), of_joint.end());
+  }
+  requireSize("joints with unknowns", joints(), 1, static_cast<Index>(unknowns.size()), 1);
+  found.erase(-1);
+  const auto count = static_cast<int>(found.size());
+  if (count > 0 && (*found.begin() != 0 || *found.rbegin() != count - 1)) {
+    throw ModelError("Gram matrix of the regressor", "unknowns of own columns",
+                     "each from 0 on at least once, or -1 for none",
+                     std::to_string(*found.begin()) + " to " + std::to_string(*found.rbegin()) +
+                         ", " + std::to_string(count) + " of them",
+                     "");
+  }
+  shared_ = std::move(unknowns);
+  own_unknowns_ = count;
 }
 
 void RegressorGram::requireRobot(const RegressorGram& other) const {
@@ -68,6 +92,10 @@ void RegressorGram::requireRobot(const RegressorGram& other) const {
 void RegressorGram::add(const RegressorGram& other) {
   requireSize("joints x own columns", joints(), own_columns_, other.joints(), other.own_columns_);
   requireRobot(other);
+  if (shared_ != other.shared_) {
+    throw ModelError("Gram matrix of the regressor", "unknowns of own columns", "the same", "others",
+                     "add sums of the same columns");
+  }
   std::transform(sums_.begin(), sums_.end(), other.sums_.begin(), sums_.begin(), std::plus<>());
   samples_ += other.samples_;
 }
@@ -141,14 +169,18 @@ void RegressorGram::normalEquations(const Eigen::Ref<const Eigen::VectorXd>& wei
   for (Index j = 0; j < joints(); ++j) {
     rowGram(j, G);
     const double w = weights[j];
-    const Index own = rigid + j * own_columns_;
     A.topLeftCorner(rigid, rigid) += w * G.topLeftCorner(rigid, rigid);
-    A.block(0, own, rigid, own_columns_) = w * G.block(0, rigid, rigid, own_columns_);
-    A.block(own, 0, own_columns_, rigid) = w * G.block(rigid, 0, own_columns_, rigid);
-    A.block(own, own, own_columns_, own_columns_) =
-        w * G.block(rigid, rigid, own_columns_, own_columns_);
     b.head(rigid) += w * G.col(tau).head(rigid);
-    b.segment(own, own_columns_) = w * G.col(tau).segment(rigid, own_columns_);
+    for (Index c = 0; c < own_columns_; ++c) {
+      const Index u = unknownOf(j, c), own = rigid + u;
+      if (u < 0) continue;
+      A.col(own).head(rigid) += w * G.col(rigid + c).head(rigid);
+      A.row(own).head(rigid) += w * G.col(rigid + c).head(rigid);
+      for (Index i = 0; i < own_columns_; ++i) {
+        if (unknownOf(j, i) >= 0) A(rigid + unknownOf(j, i), own) += w * G(rigid + i, rigid + c);
+      }
+      b[own] += w * G(tau, rigid + c);
+    }
   }
 }
 

@@ -86,6 +86,22 @@ Model withCoupling(Model model) {
   return model;
 }
 
+/// Of coupled motors, and with laws beside those of joints.
+Model withFrictionPlaces(Model model, Index places) {
+  const Index n = model.chain.jointCount();
+  Random random(7);
+  Eigen::MatrixXd coupling = Eigen::MatrixXd::Zero(n + places, n);
+  coupling.topRows(n) = model.coupling;
+  for (Index k = 0; k < places; ++k) {
+    coupling(n + k, k % n) = 1.0001 + random();
+    coupling(n + k, (k + 1) % n) = random();
+    model.friction_places.push_back("place " + std::to_string(k));
+    model.friction.emplace_back(SmoothCoulomb{1.0001 + random(), 2, 0.1, 0.1 * random(), random()});
+  }
+  model.coupling = coupling;
+  return model;
+}
+
 Model withSprings(Model model) {
   const Index n = model.chain.jointCount();
   model.stiffness = Eigen::VectorXd::LinSpaced(n, 3, 11);
@@ -130,6 +146,10 @@ std::vector<NamedModel> models() {
     all.push_back({name + ", springs", withSprings(Model(randomChain(n)))});
     all.push_back({name + ", springs, changing steps", withSprings(changing)});
     if (n > 2) all.push_back({name + ", coupled motors", withCoupling(changing)});
+    if (n > 2) {
+      all.push_back({name + ", more laws", withFrictionPlaces(withCoupling(changing), n)});
+      all.push_back({name + ", springs, more laws", withFrictionPlaces(withSprings(withCoupling(changing)), 2)});
+    }
   }
   for (const std::string robot : {"ur10", "panda"}) {
     const std::string urdf = textOf(robotFile("urdf/" + robot + ".urdf"));

@@ -92,6 +92,46 @@ TEST(CoupledMotors, ByHand) {
   EXPECT_EQ(frictionOf(again, VectorXd::Zero(2), qd), expected);
 }
 
+// A third law between both joints, at 2 - 1 rad/s: f = 5 N m.
+TEST(CoupledMotors, LawsBesideThoseOfJointsByHand) {
+  Model model(revolute(randomChain(2)));
+  model.friction = {ViscousCoulombOffset{3, 4, 0}, SmoothCoulomb{0, 3, 1e-3, 0, 0, 0.2},
+                    ViscousCoulombOffset{1, 4, 0}};
+  model.friction_places = {"elbow"};
+  model.coupling = Eigen::MatrixXd{{1, 0}, {0, 1}, {-1, 1}};
+  checkModel(model);
+  const VectorXd q = VectorXd::Constant(2, 0.3);
+  const Eigen::Vector2d qd(1, 2);
+  const double load = 0.2 * std::abs(gravityOf(model, q)[1]);
+  EXPECT_LT((frictionOf(model, q, qd) - Eigen::Vector2d(7 - 5, 3 + load + 5)).norm(), 1e-12);
+  MatrixXd by_q = MatrixXd::Zero(2, 2), by_qd = by_q;
+  addFrictionDerivatives(model, q, qd, by_q, by_qd);
+  EXPECT_LT((by_qd - Eigen::Matrix2d{{4, -1}, {-1, 1}}).norm(), 1e-12);
+  const Model again = modelFromYaml(modelFileText(model), "written");
+  EXPECT_EQ(again.friction_places, model.friction_places);
+  EXPECT_EQ(again.coupling, model.coupling);
+  EXPECT_EQ(frictionOf(again, q, qd), frictionOf(model, q, qd));
+}
+
+TEST(CoupledMotors, AreRefusedWhereLawsDoNotFitTheirPlaces) {
+  Model model(revolute(randomChain(2)));
+  model.friction = {ViscousCoulombOffset{}, ViscousCoulombOffset{}, SmoothCoulomb{0, 3, 1, 0, 0, 1}};
+  const auto refuses = [&](const char* text) {
+    EXPECT_THAT([&] { checkModel(model); },
+                testing::ThrowsMessage<ModelError>(testing::HasSubstr(text)));
+  };
+  model.coupling = Eigen::MatrixXd{{1, 0}, {0, 1}, {0, 1}};
+  refuses("name further laws in friction_places");
+  model.friction_places = {"elbow"};
+  refuses("friction of elbow: expected no load term fl");
+  model.friction[2] = ViscousCoulombOffset{1, 0, 0};
+  checkModel(model);
+  model.coupling(2, 1) = 0;
+  refuses("coupling of elbow: expected a number other than zero");
+  model.coupling = {};
+  refuses("a law and a row of coupling for each of 2 joints and 1 places");
+}
+
 TEST(CoupledMotors, HaveNoLoadFrictionWhereTheyMoveOtherJoints) {
   Model model(revolute(randomChain(2)));
   model.friction = {SmoothCoulomb{0, 3, 0.1, 0, 0, 0.2}, SmoothCoulomb{0, 3, 0.1, 0, 0, 0.2}};

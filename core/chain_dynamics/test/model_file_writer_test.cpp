@@ -138,6 +138,30 @@ TEST(ModelFileWriter, MotorsThatAreJointsComeBackAsRotors) {
   EXPECT_EQ(read.chain.joints()[2].rotor_inertia, 0.3);
 }
 
+TEST(ModelFileWriter, MotorsThatMoveSeveralJointsComeBack) {
+  const Model described = tree();
+  Eigen::Matrix3d M = Eigen::Matrix3d::Identity();
+  M(2, 1) = 0.5;  // the wrist follows the right arm's motor, too, besides its own
+  const std::vector<std::string> names = {"right_arm", "waist", "wire"};
+  Model written(withMotors({described.chain, described.branches}, {M, {}, names, {0, 0, 0.3}}));
+  for (const double fc : {1.0, 2.0, 3.0}) written.friction.emplace_back(SmoothCoulomb{0.5, fc, 0.1});
+  const std::string text = modelFileText(written);
+  const Model read = model(text);
+  EXPECT_EQ(read.chain.jointNames(), names);
+  EXPECT_EQ(read.branches[1].link, written.branches[1].link);
+  EXPECT_EQ(modelFileText(read), text);
+  const Eigen::Vector3d q(0.3, -0.2, 0.5), qd(1, -2, 0.4), qdd(3, 0.1, -1);
+  Eigen::Vector3d of_written, of_read;
+  torques(written, q, qd, qdd, of_written);
+  torques(read, q, qd, qdd, of_read);
+  EXPECT_LT((of_read - of_written).norm(), kRounding * (1 + of_written.norm()));
+  const Mechanism rotor = withLinks({read.chain, read.branches}, linksOf({read.chain, read.branches}),
+                                    Eigen::Vector3d(0, 0, 0.7));
+  EXPECT_EQ(rotor.motor_inertia, (std::vector<double>{0, 0, 0.7}));
+  EXPECT_THAT(errorOf([&] { model(replaced(text, "joint: \"right_arm\", xyz", "joint: wire, xyz")); }),
+              HasSubstr("expected a joint that moves a link, got the motor wire"));
+}
+
 /// A continuous left arm that a right one follows.
 Model twoArms(const std::string& type, const std::string& limit) {
   return Model(mechanismFromRobot(

@@ -38,6 +38,9 @@
 namespace chain_dynamics {
 inline namespace v2 {
 
+/// Most laws of one robot.
+constexpr Eigen::Index kMostFrictionLaws = 128;
+
 /// Friction of one joint: one of the named laws. ViscousCoulombOffset{} is no friction at all.
 using FrictionLaw =
     std::variant<ViscousCoulombOffset, ViscousOffsetSigmoid, CenteredSigmoid, SmoothCoulomb>;
@@ -124,9 +127,9 @@ FrictionLaw scaled(const FrictionLaw& law, double factor);
 /// @throws ModelError  naming law and coefficient.
 void checkFriction(const FrictionLaw& law, const std::string& where);
 
-/// Friction torques of all joints: `f_j = friction(laws[j], qd_j, g_j)`.
+/// Friction torques of laws: `f_j = friction(laws[j], qd_j, g_j)`; of all joints, where each has its own.
 ///
-/// @param laws    one per joint.
+/// @param laws    n.
 /// @param qd      n; rad/s (prismatic m/s).
 /// @param g       n; gravity torques, N m (prismatic N); where no law depends on load, may be empty.
 /// @param[out] f  n; N m (prismatic N).

@@ -168,12 +168,11 @@ Eigen::Index linkCount(const std::vector<Branch>& branches);
 std::vector<LinkParameters> linksOf(const Mechanism& mechanism);
 
 /// The mechanism with other links and rotors. Each link has mass in the first of the branches that move
-/// it, and a rotor stands in a joint that follows its coordinate alone.
+/// it. A rotor stands in a joint that follows its coordinate alone, or else in motor_inertia.
 ///
 /// @param links          as many as linksOf() gives.
-/// @param rotor_inertia  of each coordinate, seen from it; kg m^2 (prismatic kg).
-/// @throws ModelError  another number of links or rotors, or a rotor other than zero of a coordinate that
-///     no joint follows alone.
+/// @param rotor_inertia  of each coordinate, seen from it, instead of all that it had; kg m^2 (prismatic kg).
+/// @throws ModelError  another number of links or rotors.
 Mechanism withLinks(const Mechanism& mechanism, const std::vector<LinkParameters>& links,
                     const Eigen::Ref<const Eigen::VectorXd>& rotor_inertia);
 

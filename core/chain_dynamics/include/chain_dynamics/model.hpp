@@ -92,12 +92,17 @@ struct Model {
   /// those of gravity.
   std::vector<LinkParameters> gravity_parameters = {};
 
-  /// Empty: no friction is known. Otherwise one law per joint, in N m (prismatic N).
+  /// Empty: no friction is known. Otherwise one law per joint, and then one per place of friction_places;
+  /// N m (prismatic N).
   std::vector<FrictionLaw> friction = {};
 
-  /// Empty: each law is of its joint. Otherwise n x n, of motors that joints share, as in wrists whose
-  /// last motor turns with the joint before: motors have velocities `v = coupling qd`, and friction of
-  /// the joints is `coupling' f(v)`, f_j by law j. Motors that turn with several have no load term.
+  /// Names of places beside the joints where friction acts, too: the bearing between two bars of a
+  /// parallelogram, a joint that several motors turn.
+  std::vector<std::string> friction_places = {};
+
+  /// Empty: each law is of its joint. Otherwise r x n, a row for each of r laws, as of motors that joints
+  /// share: laws act at the velocities `v = coupling qd`, and friction of the joints is `coupling' f(v)`,
+  /// f_k by law k. A law has a load term only where its row is that of its joint alone.
   OwnedMatrix coupling = {};
 
   /// Empty: nothing is known about motors. Otherwise torque per motor current of each joint; N m/A.

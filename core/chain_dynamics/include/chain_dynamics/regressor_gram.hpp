@@ -15,7 +15,8 @@
 ///     r_j = [Y_j | c_j | tau_j],    G_j = sum over the samples of w_j r_j' r_j
 ///
 /// The regressor itself is never held: its rows are made a few states at a time, in the cache.
-/// Each joint has a matrix of its own, so joints can be weighed against each other afterwards.
+/// Each joint has a matrix of its own, so joints can be weighed against each other afterwards. Columns of
+/// several joints may have one unknown: share().
 
 #pragma once
 
@@ -72,8 +73,20 @@ class RegressorGram {
   Eigen::Index samples() const { return samples_; }
   /// Numbers of a row r_j: ten of each link, own columns, torque.
   Eigen::Index rowSize() const { return 10 * links_ + own_columns_ + 1; }
-  /// Unknowns of the normal equations: ten parameters of each link, then each joint's own in turn.
-  Eigen::Index unknowns() const { return 10 * links_ + own_columns_ * joints(); }
+  /// Unknowns of the normal equations: ten parameters of each link, then each joint's own in turn, or those
+  /// of share().
+  Eigen::Index unknowns() const { return 10 * links_ + own_unknowns_; }
+  /// The unknown, from 0 on behind those of the links, of a joint's own column; -1: none.
+  Eigen::Index unknownOf(Eigen::Index joint, Eigen::Index column) const {
+    if (shared_.empty()) return own_columns_ * joint + column;
+    return shared_[static_cast<std::size_t>(joint)][static_cast<std::size_t>(column)];
+  }
+
+  /// States the unknown of each own column of each joint, as unknownOf() gives it: the same for columns of
+  /// several joints, or of one. Each from 0 on at least once.
+  ///
+  /// @throws ModelError  another number of joints or columns, an unknown without a column.
+  void share(std::vector<std::vector<int>> unknowns);
   /// The first link that joint j moves: columns of those before it are zero in its row.
   Eigen::Index firstLink(Eigen::Index joint) const {
     return moved_[static_cast<std::size_t>(joint)].front();
@@ -81,7 +94,7 @@ class RegressorGram {
 
   /// Adds the samples of another one.
   ///
-  /// @throws ModelError  other numbers of joints, links or columns.
+  /// @throws ModelError  other numbers of joints, links or columns, other unknowns.
   void add(const RegressorGram& other);
 
   /// Adds the products of two numbers of Y_j of another one, whose own columns don't matter.
@@ -131,7 +144,8 @@ class RegressorGram {
   void requireRobot(const RegressorGram& other) const;
 
   std::vector<std::vector<int>> moved_;
-  Eigen::Index links_, own_columns_, samples_ = 0;
+  Eigen::Index links_, own_columns_, own_unknowns_, samples_ = 0;
+  std::vector<std::vector<int>> shared_;  // [joint][column]; empty: each column has its own
   std::vector<double> sums_;  // one matrix after the other: src/fast/gram.hpp
 };
 

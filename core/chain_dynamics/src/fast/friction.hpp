@@ -75,14 +75,14 @@ FAST_INLINE FrictionNumbers<V> lawBy(const Number& number) {
 }
 FAST_INLINE FrictionNumbers<Pack> lawOfPack(const Robot& robot, int joint) {
   return lawBy<Pack>([&](std::size_t k) FAST_LAMBDA {
-    return all<Pack>(robot.friction[static_cast<std::ptrdiff_t>(k) * robot.stride + joint]);
+    return all<Pack>(robot.friction[static_cast<std::ptrdiff_t>(k) * robot.law_stride + joint]);
   });
 }
 
-// of(qd, law, joint) for all joints; result has room for a pack at the end.
+// of(qd, law, joint) for all laws; result has room for a pack at the end.
 template <typename Of>
 FAST_INLINE void forEachLaw(const Robot& robot, const double* qd, double* result, const Of& of) {
-  const int n = robot.joints;
+  const int n = robot.laws;
   double padded[kShortWidth] = {};
   for (int i = 0; i < n; i += kShortWidth) {
     const int first = firstOfPack(i, n);
@@ -92,33 +92,35 @@ FAST_INLINE void forEachLaw(const Robot& robot, const double* qd, double* result
       from = padded;
     }
     const auto law = lawBy<Short>([&](std::size_t k) FAST_LAMBDA {
-      return load<Short>(robot.friction + static_cast<std::ptrdiff_t>(k) * robot.stride + first);
+      return load<Short>(robot.friction + static_cast<std::ptrdiff_t>(k) * robot.law_stride +
+                         first);
     });
     store(of(load<Short>(from), law, first), result + first);
   }
 }
 template <typename Of>
 FAST_INLINE void forEachLaw(const Robot& robot, const Pack* qd, Pack* result, const Of& of) {
-  for (int i = 0; i < robot.joints; ++i) result[i] = of(qd[i], lawOfPack(robot, i), i);
+  for (int i = 0; i < robot.laws; ++i) result[i] = of(qd[i], lawOfPack(robot, i), i);
 }
 
 FAST_INLINE Short atJoint(const double* numbers, int joint) { return load<Short>(numbers + joint); }
 FAST_INLINE const Pack& atJoint(const Pack* numbers, int joint) { return numbers[joint]; }
 
-/// Joints, with room for a pack at the end.
+/// Joints, or laws of friction, with room for a pack at the end.
 constexpr int kJointSpace = kMaxJoints + kShortWidth;
+constexpr int kLawSpace = kMaxLaws + kShortWidth;
 
 /// Gravity torques where friction depends on them; else zeros.
 template <typename V>
 FAST_INLINE void loadOf(const Robot& robot, int structure, const State<V>& state, V* g) {
-  for (int i = 0; i < kJointSpace; ++i) g[i] = V{};
+  for (int i = 0; i < robot.laws + kShortWidth; ++i) g[i] = V{};
   if (robot.load_friction) recursionsOf<V>(structure).gravity(robot, state, g);
 }
 
-/// of(c, motor, joint) for each coefficient c of the coupling that isn't zero: a NaN goes no further.
+/// of(c, law, joint) for each coefficient c of the coupling that isn't zero: a NaN goes no further.
 template <typename Of>
 FAST_INLINE void forEachCoupling(const Robot& robot, const Of& of) {
-  for (int m = 0; m < robot.joints; ++m) {
+  for (int m = 0; m < robot.laws; ++m) {
     for (int i = 0; i < robot.joints; ++i) {
       const double c = robot.coupling[m * robot.joints + i];
       if (c != 0.0) of(c, m, i);
@@ -126,27 +128,27 @@ FAST_INLINE void forEachCoupling(const Robot& robot, const Of& of) {
   }
 }
 
-/// Velocities of the motors, in v where they aren't those of the joints.
+/// Velocities at which laws act, in v where they aren't those of the joints.
 template <typename V>
-FAST_INLINE const V* motorVelocities(const Robot& robot, const V* qd, V* v) {
+FAST_INLINE const V* lawVelocities(const Robot& robot, const V* qd, V* v) {
   if (robot.coupling == nullptr) return qd;
-  for (int m = 0; m < kJointSpace; ++m) v[m] = V{};
+  for (int m = 0; m < robot.laws + kShortWidth; ++m) v[m] = V{};
   forEachCoupling(robot, [&](double c, int m, int i) FAST_LAMBDA { v[m] += c * qd[i]; });
   return v;
 }
 
 template <typename V>
 FAST_APART void changingFriction(const Robot& robot, int structure, const State<V>& state, V* f) {
-  V g[kJointSpace], v[kJointSpace], of_motors[kJointSpace];
+  V g[kLawSpace], v[kLawSpace], of_laws[kLawSpace];
   loadOf(robot, structure, state, g);
-  V* const to = robot.coupling == nullptr ? f : of_motors;
-  forEachLaw(robot, motorVelocities(robot, state.qd, v), to,
+  V* const to = robot.coupling == nullptr ? f : of_laws;
+  forEachLaw(robot, lawVelocities(robot, state.qd, v), to,
              [&](const auto& qd, const auto& law, int joint) FAST_LAMBDA {
                return frictionOf(qd, heightOf(qd, atJoint(g, joint), law).height, law);
              });
   if (robot.coupling == nullptr) return;
   for (int i = 0; i < robot.joints; ++i) f[i] = V{};
-  forEachCoupling(robot, [&](double c, int m, int i) FAST_LAMBDA { f[i] += c * of_motors[m]; });
+  forEachCoupling(robot, [&](double c, int m, int i) FAST_LAMBDA { f[i] += c * of_laws[m]; });
 }
 
 /// torques += factor f.
@@ -163,32 +165,31 @@ template <typename V>
 FAST_APART void addChangingFrictionDerivatives(const Robot& robot, int structure,
                                                const State<V>& state,
                                                const DerivativeEntries<V>& to) {
-  V g[kJointSpace], v[kJointSpace];
-  V of_motors[kJointSpace];
+  V g[kLawSpace], v[kLawSpace], of_laws[kLawSpace];
   loadOf(robot, structure, state, g);
-  const V* const velocities = motorVelocities(robot, state.qd, v);
-  forEachLaw(robot, velocities, of_motors,
+  const V* const velocities = lawVelocities(robot, state.qd, v);
+  forEachLaw(robot, velocities, of_laws,
              [&](const auto& qd, const auto& law, int joint) FAST_LAMBDA {
                const auto changing = heightOf(qd, atJoint(g, joint), law);
                return frictionSlopeOf(qd, changing.height, law) + changing.slope * stepOf(qd, law);
              });
   if (robot.coupling == nullptr) {
-    for (int i = 0; i < robot.joints; ++i) to.by_qd[i + i * to.outer_step] += of_motors[i];
+    for (int i = 0; i < robot.joints; ++i) to.by_qd[i + i * to.outer_step] += of_laws[i];
   } else {
     forEachCoupling(robot, [&](double c, int m, int i) FAST_LAMBDA {
       for (int j = 0; j < robot.joints; ++j) {
         const double both = c * robot.coupling[m * robot.joints + j];
-        if (both != 0.0) to.by_qd[i + j * to.outer_step] += both * of_motors[m];
+        if (both != 0.0) to.by_qd[i + j * to.outer_step] += both * of_laws[m];
       }
     });
   }
   if (!robot.load_friction) return;
 
-  // df/dq = df/dg dg/dq; of motors that joints share, no friction depends on load
-  forEachLaw(robot, velocities, of_motors,
+  // df/dq = df/dg dg/dq; of laws that act on several joints, none depends on load
+  forEachLaw(robot, velocities, of_laws,
              [&](const auto& qd, const auto& law, int joint)
                  FAST_LAMBDA { return law.fl * signOf(atJoint(g, joint)) * stepOf(qd, law); });
-  addLoadDerivatives<AnyWithMatrices<V>>(robot, state, of_motors, to.by_q, to.outer_step);
+  addLoadDerivatives<AnyWithMatrices<V>>(robot, state, of_laws, to.by_q, to.outer_step);
 }
 
 /// Friction torques of one state; f has room for a pack at the end.

@@ -23,6 +23,7 @@ inline namespace v2 {
 namespace fast {
 
 constexpr int kMaxJoints = 64;
+constexpr int kMaxLaws = 128;  // of friction
 
 /// One joint's place on its parent link. The first joint's is the root itself.
 struct Placement {
@@ -78,11 +79,13 @@ struct Robot {
   const Body* gravity_bodies;   ///< null: gravity has the same set
   const Body* const* rows;      ///< null: none; else joints sets of bodies: row j has set j
   const double* row_lanes;      ///< the same: [joint][number of Body][row]
-  const double* friction;       ///< null: none; else [number of FrictionNumbers][joint]
-  const double* coupling;       ///< null: friction is of joints; else of motors: [motor][joint]
+  const double* friction;       ///< null: none; else [number of FrictionNumbers][law]
+  const double* coupling;       ///< null: friction is of joints; else [law][joint]
+  int laws;                     ///< of friction: joints, or more where there is coupling
+  int law_stride;               ///< laws, and zeros to the end of a pack: rows of friction
   bool changing_steps;  ///< a step depends on load or (Stribeck) velocity, or there is coupling
   bool load_friction;   ///< on load
-  int stride;           ///< joints, and zeros to the end of a pack: rows of the last two
+  int stride;           ///< joints, and zeros to the end of a pack: rows of row_lanes
   FixedPose base;       ///< of the first joint's frame at angle zero, in the root frame
   FixedPose tip;        ///< of the tip in the last frame
 };
