@@ -65,7 +65,8 @@ RegressorGram::RegressorGram(std::vector<std::vector<int>> moved, Index links, I
 void RegressorGram::share(std::vector<std::vector<int>> unknowns) {
   std::set<int> found;
   for (const std::vector<int>& of_joint : unknowns) {
-    requireSize("own columns with an unknown", own_columns_, 1, static_cast<Index>(of_joint.size()), 1);
+    requireSize("own columns with an unknown", own_columns_, 1, static_cast<Index>(of_joint.size()),
+                1);
     found.insert(of_joint.begin(), of_joint.end());
   }
   requireSize("joints with unknowns", joints(), 1, static_cast<Index>(unknowns.size()), 1);
@@ -93,8 +94,8 @@ void RegressorGram::add(const RegressorGram& other) {
   requireSize("joints x own columns", joints(), own_columns_, other.joints(), other.own_columns_);
   requireRobot(other);
   if (shared_ != other.shared_) {
-    throw ModelError("Gram matrix of the regressor", "unknowns of own columns", "the same", "others",
-                     "add sums of the same columns");
+    throw ModelError("Gram matrix of the regressor", "unknowns of own columns", "the same",
+                     "others", "add sums of the same columns");
   }
   std::transform(sums_.begin(), sums_.end(), other.sums_.begin(), sums_.begin(), std::plus<>());
   samples_ += other.samples_;

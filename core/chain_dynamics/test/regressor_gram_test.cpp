@@ -190,6 +190,40 @@ TEST(RegressorGram, ItsNormalEquationsFindParametersAndFriction) {
   EXPECT_LE(largest(A * x - b), 1e-9 * largest(b));
 }
 
+// Unknowns x of shared columns are those of all columns by a matrix P of zeros and ones: P' A P.
+TEST(RegressorGram, SharesUnknownsOfColumns) {
+  const FastModel fast(Model(randomChain(3)));
+  const Inputs in(3, 20);
+  RegressorGram apart(3, 2), shared(3, 2);
+  shared.share({{0, 2}, {0, -1}, {1, 2}});
+  EXPECT_EQ(shared.unknowns(), 33);
+  for (RegressorGram* const gram : {&apart, &shared}) {
+    fast.addToGram({in.q, in.qd, in.qdd, in.tau, {in.qd, in.qdd}}, *gram);
+  }
+  MatrixXd P = MatrixXd::Zero(36, 33);
+  P.topLeftCorner(30, 30).setIdentity();
+  for (Index j = 0; j < 3; ++j) {
+    for (Index c = 0; c < 2; ++c) {
+      if (shared.unknownOf(j, c) >= 0)
+        P(30 + apart.unknownOf(j, c), 30 + shared.unknownOf(j, c)) = 1;
+    }
+  }
+  MatrixXd A(36, 36), A_shared(33, 33);
+  VectorXd b(36), b_shared(33);
+  const VectorXd weights = VectorXd::LinSpaced(3, 1, 2);
+  apart.normalEquations(weights, A, b);
+  shared.normalEquations(weights, A_shared, b_shared);
+  EXPECT_TRUE(agree(A_shared, P.transpose() * A * P, largest(A), kTolerance));
+  EXPECT_TRUE(agree(b_shared, P.transpose() * b, largest(b), kTolerance));
+  using ::testing::HasSubstr;
+  EXPECT_THAT(errorOf([&] { shared.add(apart); }), HasSubstr("add sums of the same columns"));
+  EXPECT_THAT(errorOf([&] {
+                shared.share({{0, 2}, {0, 2}, {0, 2}});
+              }),
+              HasSubstr("each from 0 on at least once"));
+  EXPECT_THAT(errorOf([&] { shared.share({{0, 1}}); }), HasSubstr("joints with unknowns"));
+}
+
 TEST(RegressorGram, OfATreeHasTheUnknownsOfAllLinks) {
   const FastModel fast(tree());
   const RegressorGram gram = fast.emptyGram(2);

@@ -146,7 +146,7 @@ class RegressorGram {
   std::vector<std::vector<int>> moved_;
   Eigen::Index links_, own_columns_, own_unknowns_, samples_ = 0;
   std::vector<std::vector<int>> shared_;  // [joint][column]; empty: each column has its own
-  std::vector<double> sums_;  // one matrix after the other: src/fast/gram.hpp
+  std::vector<double> sums_;              // one matrix after the other: src/fast/gram.hpp
 };
 
 }  // namespace v2
