@@ -13,6 +13,7 @@
 #include "branch_sums.hpp"
 #include "chain_dynamics/friction.hpp"
 #include "chain_dynamics/scratch.hpp"
+#include "springs.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -55,12 +56,9 @@ void add(const FastBranch& b, const double* of_branch, double* sum) {
   }
 }
 
-/// `sum += k (q - rest)`, of springs.
+/// Adds the torques of springs.
 void addSprings(const FastBranches& all, const double* q, double* sum) {
-  const Model& model = *all.model;
-  for (Index j = 0; j < model.stiffness.size(); ++j) {
-    if (model.stiffness[j] != 0) sum[j] += model.stiffness[j] * (q[j] - model.rest[j]);
-  }
+  for (Index j = 0; j < springCount(*all.model); ++j) sum[j] += springTorque(*all.model, j, q);
 }
 
 void friction(const Robot& robot, int /*structure*/, const double* q, const double* qd, double* f) {
@@ -217,7 +215,9 @@ void regressor(const Robot& robot, const double* q, const double* qd, const doub
                               jointsOf(b));
     for (int k = 0; k < 3; ++k) addMatrix(b, of_branch[k], sums[k]);
   }
-  addToDiagonal(all.model->stiffness, sums[0]);
+  for (Index j = 0; j < springCount(*all.model); ++j) {
+    sums[0].data[j * (sums[0].row_step + sums[0].column_step)] += springSlope(*all.model, j, q);
+  }
   addToDiagonal(all.model->motor_inertia, sums[2]);
 }
 

@@ -12,6 +12,7 @@
 #include "branch_sums.hpp"
 #include "chain_dynamics/states.hpp"
 #include "fast_branches.hpp"
+#include "springs.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -146,6 +147,19 @@ void addProducts(const OwnedVector& numbers, const Samples& x, const OwnedVector
   }
 }
 
+/// Adds the torques of springs and levers in the states from `first` on.
+void addSprings(const Model& model, const Samples& q, std::ptrdiff_t first, const States& sum) {
+  addProducts(model.stiffness, q, &model.rest, first, sum);
+  for (Index j = 0; j < model.levers.cols(); ++j) {
+    if (!hasLever(model, j)) continue;
+    const double* const from = q.data + j * q.joint_step + first * q.state_step;
+    for (Index k = 0; k < sum.count; ++k) {
+      const double angle = from[k * q.state_step];
+      sum(j, k) += model.levers(0, j) * std::sin(angle) + model.levers(1, j) * std::cos(angle);
+    }
+  }
+}
+
 /// The states from `first` on.
 Samples from(const Samples& x, std::ptrdiff_t first) {
   return {x.data + first * x.state_step, x.joint_step, x.state_step};
@@ -184,7 +198,7 @@ void torquesMany(const Robot& robot, int structure, std::ptrdiff_t states, Sampl
       frictionMany(robot, structure, sum.count, from(q, first), from(qd, first),
                    {sum.data, sum.joint_step, sum.state_step});
     }
-    addProducts(model.stiffness, q, &model.rest, first, sum);
+    addSprings(model, q, first, sum);
     addProducts(model.motor_inertia, qdd, nullptr, first, sum);
   };
   sumOfBranches(robot, states, {q, qd, qdd}, tau, compute, start);
@@ -207,7 +221,7 @@ void gravityMany(const Robot& robot, int /*structure*/, std::ptrdiff_t states, S
   };
   const auto start = [&](std::ptrdiff_t first, const States& sum) {
     setZero(sum);
-    addProducts(model.stiffness, q, &model.rest, first, sum);
+    addSprings(model, q, first, sum);
   };
   sumOfBranches(robot, states, {q}, g, compute, start);
 }
@@ -252,7 +266,7 @@ void componentsMany(const Robot& robot, int /*structure*/, std::ptrdiff_t states
     for (Index k = 0; k < count; ++k) setZero(ofState(H, first + k), n, n);
     setZero(c_all);
     setZero(g_all);
-    addProducts(all.model->stiffness, q, &all.model->rest, first, g_all);
+    addSprings(*all.model, q, first, g_all);
     for (const FastBranch& b : all.branches) {
       const Index m = jointsOf(b);
       const ConstStates x = motionOf(b, q, first, count, size, true, q_b);

@@ -15,6 +15,7 @@
 #include "fast/robot.hpp"
 #include "fast_branches.hpp"
 #include "fast_model_check.hpp"
+#include "springs.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -62,7 +63,7 @@ std::vector<KernelSet> usableKernels(int joints) {
 
 /// Of how many branches the kernels compute a model: of none, if it is a chain without springs.
 std::size_t branchCount(const Model& model) {
-  return model.branches.empty() && model.stiffness.size() > 0 ? 1 : model.branches.size();
+  return model.branches.empty() && springCount(model) > 0 ? 1 : model.branches.size();
 }
 
 /// The model itself, or a chain as a mechanism whose one branch it is.

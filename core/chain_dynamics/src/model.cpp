@@ -20,6 +20,7 @@
 #include "chain_dynamics/parameter_sets.hpp"
 #include "chain_dynamics/torque_derivatives.hpp"
 #include "model_branches.hpp"
+#include "springs.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -34,12 +35,8 @@ ParameterSets setsOf(const Model& model) {
 class OwnTorques {
  public:
   OwnTorques(const Model& model, const ConstVectorRef& q)
-      : tau_(model.stiffness.size() + model.motor_inertia.size()),
-        springs_(model.stiffness.size()) {
-    for (Eigen::Index j = 0; j < springs_; ++j) {
-      const double k = model.stiffness[j];
-      tau_[j] = k == 0 ? 0 : k * (q[j] - model.rest[j]);  // a NaN goes no further
-    }
+      : tau_(springCount(model) + model.motor_inertia.size()), springs_(springCount(model)) {
+    for (Eigen::Index j = 0; j < springs_; ++j) tau_[j] = springTorque(model, j, q);
   }
   OwnTorques(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qdd)
       : OwnTorques(model, q) {
@@ -60,7 +57,9 @@ class OwnTorques {
   Eigen::Index springs_, motors_ = 0;
 };
 
-Eigen::Index lawCount(const Model& model) { return static_cast<Eigen::Index>(model.friction.size()); }
+Eigen::Index lawCount(const Model& model) {
+  return static_cast<Eigen::Index>(model.friction.size());
+}
 
 /// Adds the inertia that motors have to the diagonal of H.
 void addMotors(const Model& model, MatrixRef H) {
@@ -137,8 +136,8 @@ void checkFrictionLaws(const Model& model) {
   if (places > 0 && (model.friction.size() != n + places || model.coupling.size() == 0 ||
                      lawCount(model) > kMostFrictionLaws)) {
     throw ModelError(where, "friction",
-                     "a law and a row of coupling for each of " + std::to_string(n) + " joints and " +
-                         std::to_string(places) + " places, of at most " +
+                     "a law and a row of coupling for each of " + std::to_string(n) +
+                         " joints and " + std::to_string(places) + " places, of at most " +
                          std::to_string(kMostFrictionLaws) + " laws",
                      std::to_string(model.friction.size()) + " laws, " +
                          std::to_string(model.coupling.rows()) + " rows",
@@ -159,11 +158,11 @@ void checkCoupling(const Model& model) {
   if (C.size() == 0 || laws == 0) return;
   const std::string where = "model " + model.name;
   if (C.rows() != laws || C.cols() != n || !C.allFinite()) {
-    throw ModelError(
-        where, "coupling", std::to_string(laws) + " x " + std::to_string(n) + " finite numbers",
-        std::to_string(C.rows()) + " x " + std::to_string(C.cols()) +
-            (C.allFinite() ? "" : ", not all finite"),
-        "state a row per law of friction, of a number per joint, or no coupling");
+    throw ModelError(where, "coupling",
+                     std::to_string(laws) + " x " + std::to_string(n) + " finite numbers",
+                     std::to_string(C.rows()) + " x " + std::to_string(C.cols()) +
+                         (C.allFinite() ? "" : ", not all finite"),
+                     "state a row per law of friction, of a number per joint, or no coupling");
   }
   for (Eigen::Index k = 0; k < laws; ++k) {
     const auto law = static_cast<std::size_t>(k);
@@ -196,8 +195,17 @@ void checkBranches(const Model& model) {
 }
 
 void checkSprings(const Model& model) {
-  if (model.stiffness.size() == 0) return;
+  if (springCount(model) == 0) return;
   const std::string where = "model " + model.name;
+  if (model.levers.size() > 0 && (model.levers.rows() != 2 || !model.levers.allFinite() ||
+                                  model.levers.cols() != model.chain.jointCount())) {
+    throw ModelError(where, "levers of springs",
+                     "2 x " + std::to_string(model.chain.jointCount()) + " finite numbers",
+                     std::to_string(model.levers.rows()) + " x " +
+                         std::to_string(model.levers.cols()) +
+                         (model.levers.allFinite() ? "" : ", not all finite"),
+                     "");
+  }
   checkCount(model, "stiffness of springs", static_cast<std::size_t>(model.stiffness.size()));
   if (model.rest.size() != model.stiffness.size()) {
     throw ModelError(where, "springs at rest", "a position for each stiffness",
@@ -346,6 +354,10 @@ double potentialEnergy(const Model& model, const ConstVectorRef& q) {
     if (model.stiffness[j] == 0) continue;
     energy += 0.5 * model.stiffness[j] * (q[j] - model.rest[j]) * (q[j] - model.rest[j]);
   }
+  for (Eigen::Index j = 0; j < model.levers.cols(); ++j) {
+    if (!hasLever(model, j)) continue;
+    energy += model.levers(1, j) * std::sin(q[j]) - model.levers(0, j) * std::cos(q[j]);
+  }
   return energy;
 }
 
@@ -375,7 +387,9 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
   const Load load(model, q);
   const LawVelocities laws(model, qd);
   // What saturates has at infinity the slope that it has far out; NaN stays.
-  const auto velocity = [&](Eigen::Index j) { return std::clamp<double>(laws.v[j], -1e100, 1e100); };
+  const auto velocity = [&](Eigen::Index j) {
+    return std::clamp<double>(laws.v[j], -1e100, 1e100);
+  };
   for (Eigen::Index j = 0; j < lawCount(model); ++j) {
     const FrictionLaw& law = model.friction[static_cast<std::size_t>(j)];
     const double slope = frictionSlope(law, velocity(j), load.g[j]);
@@ -393,8 +407,8 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
   const auto load_slope = [&](Eigen::Index j) {
     return frictionLoadSlope(model.friction[static_cast<std::size_t>(j)], velocity(j), load.g[j]);
   };
-  for (Eigen::Index j = 0; j < model.stiffness.size(); ++j) {
-    dtau_dq(j, j) += load_slope(j) * model.stiffness[j];
+  for (Eigen::Index j = 0; j < springCount(model); ++j) {
+    dtau_dq(j, j) += load_slope(j) * springSlope(model, j, q);
   }
   if (!model.branches.empty()) {
     Scratch<double> memory(n);
@@ -425,7 +439,7 @@ void torqueDerivatives(const Model& model, const ConstVectorRef& q, const ConstV
   } else {
     torqueDerivatives(model.chain, setsOf(model), q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
   }
-  dtau_dq.diagonal().head(model.stiffness.size()) += model.stiffness;
+  for (Eigen::Index j = 0; j < springCount(model); ++j) dtau_dq(j, j) += springSlope(model, j, q);
 }
 
 }  // namespace v2

@@ -70,15 +70,18 @@ void addCoupling(const std::vector<JointEntry>& entries, const std::vector<Frict
 }
 
 void addSprings(const std::vector<JointEntry>& entries, Model& model) {
-  if (std::none_of(entries.begin(), entries.end(),
-                   [](const JointEntry& entry) { return entry.stiffness != 0; })) {
-    return;
-  }
-  model.stiffness.resize(model.chain.jointCount());
-  model.rest.resize(model.chain.jointCount());
-  for (Eigen::Index j = 0; j < model.rest.size(); ++j) {
-    model.stiffness[j] = entries[static_cast<std::size_t>(j)].stiffness;
-    model.rest[j] = entries[static_cast<std::size_t>(j)].rest;
+  const Eigen::Index n = model.chain.jointCount();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const JointEntry& entry = entries[static_cast<std::size_t>(j)];
+    if (entry.stiffness != 0) {
+      if (model.stiffness.size() == 0) model.rest = model.stiffness = Eigen::VectorXd::Zero(n);
+      model.stiffness[j] = entry.stiffness;
+      model.rest[j] = entry.rest;
+    }
+    if (entry.lever_sin != 0 || entry.lever_cos != 0) {
+      if (model.levers.size() == 0) model.levers = Eigen::MatrixXd::Zero(2, n);
+      model.levers.col(j) << entry.lever_sin, entry.lever_cos;
+    }
   }
 }
 

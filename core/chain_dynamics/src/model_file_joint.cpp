@@ -223,9 +223,18 @@ void readExperience(LocatedMap& map, int schema, JointEntry& entry) {
 void readSpring(const LocatedValue& value, int schema, JointEntry& entry) {
   if (schema < 2) refuseNewer(value, "no such key");
   LocatedMap map = value.map();
-  map.expect({"stiffness", "rest"});
-  entry.stiffness = map.required("stiffness").number();
-  entry.rest = map.required("rest").number();
+  const auto has = [&map](const char* key) { return map.optional(key).has_value(); };
+  const bool is_lever = has("lever_sin") || has("lever_cos");
+  if (!is_lever || has("stiffness") || has("rest")) {
+    map.expect({"stiffness", "rest"});
+    entry.stiffness = map.required("stiffness").number();
+    entry.rest = map.required("rest").number();
+  }
+  if (is_lever) {
+    map.expect({"lever_sin", "lever_cos"});
+    entry.lever_sin = map.required("lever_sin").number();
+    entry.lever_cos = map.required("lever_cos").number();
+  }
   map.rejectOthers();
 }
 
@@ -396,7 +405,8 @@ std::vector<FrictionPlace> readFrictionPlaces(const LocatedValue& value,
                                               const std::vector<JointEntry>& coordinates) {
   if (conventions.schema < 2) refuseNewer(value, "no such key");
   if (coordinates.front().friction.empty()) {
-    value.fail("friction of each joint beside it", "where a joint has no friction, write {law: none}");
+    value.fail("friction of each joint beside it",
+               "where a joint has no friction, write {law: none}");
   }
   if (conventions.friction_level == Level::kCurrent) {
     value.fail("no such key, as friction is in currents", "state friction as torque");

@@ -57,6 +57,7 @@ struct JointEntry {
   std::vector<double> coupling;                            // n, or none: a motor of its own
   std::vector<double> drive_gain;                          // one, or none
   double stiffness = 0, rest = 0;                          // of a spring
+  double lever_sin = 0, lever_cos = 0;                     // of one that pulls a lever
   std::vector<double> torque_deviation;                    // one, or none
   std::vector<SeenRange> seen;                             // one, or none
   std::string parent;              // of a tree: the joint that moves the link it is on; empty: none

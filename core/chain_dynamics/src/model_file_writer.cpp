@@ -15,6 +15,7 @@
 #include "chain_dynamics/joint_frame.hpp"
 #include "chain_dynamics/mechanism.hpp"
 #include "chain_dynamics/model_file.hpp"
+#include "springs.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -141,10 +142,15 @@ std::string identifiedLines(const Model& model, std::size_t j, const std::string
   };
   std::string text = entry("drive_gain", model.drive_gains);
   const auto k = static_cast<Eigen::Index>(j);
+  std::string spring;
   if (model.stiffness.size() > 0 && model.stiffness[k] != 0) {
-    text += "    spring: {stiffness: " + number(model.stiffness[k]) +
-            ", rest: " + number(model.rest[k]) + "}\n";
+    spring = "stiffness: " + number(model.stiffness[k]) + ", rest: " + number(model.rest[k]);
   }
+  if (hasLever(model, k)) {
+    spring += (spring.empty() ? "" : ", ") + std::string("lever_sin: ") +
+              number(model.levers(0, k)) + ", lever_cos: " + number(model.levers(1, k));
+  }
+  if (!spring.empty()) text += "    spring: {" + spring + "}\n";
   if (!model.friction.empty()) text += "    " + frictionText(model.friction[j]) + "\n";
   if (model.coupling.size() > 0 && !model.friction.empty()) {
     text += "    coupling: " + list(model.coupling.row(static_cast<Eigen::Index>(j))) + "\n";
@@ -222,8 +228,9 @@ std::string motorLines(const Model& model, std::size_t& next) {
   std::string text;
   for (; next < model.chain.joints().size() && isMotor(model, next); ++next) {
     const Joint& joint = model.chain.joints()[next];
-    text += "  - name: " + quoted(joint.name) + "\n    motor: true\n    type: " +
-            typeText(joint.type) + "\n" + limitsLine(joint.limits) +
+    text += "  - name: " + quoted(joint.name) +
+            "\n    motor: true\n    type: " + typeText(joint.type) + "\n" +
+            limitsLine(joint.limits) +
             rotorLine(model.motor_inertia.size() == 0
                           ? 0.0
                           : model.motor_inertia[static_cast<Eigen::Index>(next)]) +

@@ -110,6 +110,9 @@ Model withSprings(Model model) {
     const Joint& joint = model.chain.joints()[static_cast<std::size_t>(j)];
     if (j == 1 || joint.type == JointType::kContinuous) model.stiffness[j] = 0;
   }
+  model.levers = Eigen::MatrixXd::Zero(2, n);
+  model.levers.row(0).setLinSpaced(n, -3, 5);
+  model.levers(1, n - 1) = 2.5;
   return model;
 }
 
@@ -148,7 +151,8 @@ std::vector<NamedModel> models() {
     if (n > 2) all.push_back({name + ", coupled motors", withCoupling(changing)});
     if (n > 2) {
       all.push_back({name + ", more laws", withFrictionPlaces(withCoupling(changing), n)});
-      all.push_back({name + ", springs, more laws", withFrictionPlaces(withSprings(withCoupling(changing)), 2)});
+      all.push_back({name + ", springs, more laws",
+                     withFrictionPlaces(withSprings(withCoupling(changing)), 2)});
     }
   }
   for (const std::string robot : {"ur10", "panda"}) {

@@ -115,7 +115,8 @@ TEST(CoupledMotors, LawsBesideThoseOfJointsByHand) {
 
 TEST(CoupledMotors, AreRefusedWhereLawsDoNotFitTheirPlaces) {
   Model model(revolute(randomChain(2)));
-  model.friction = {ViscousCoulombOffset{}, ViscousCoulombOffset{}, SmoothCoulomb{0, 3, 1, 0, 0, 1}};
+  model.friction = {ViscousCoulombOffset{}, ViscousCoulombOffset{},
+                    SmoothCoulomb{0, 3, 1, 0, 0, 1}};
   const auto refuses = [&](const char* text) {
     EXPECT_THAT([&] { checkModel(model); },
                 testing::ThrowsMessage<ModelError>(testing::HasSubstr(text)));

@@ -39,6 +39,7 @@ void expectSame(const Model& written, const Model& read) {
   EXPECT_EQ(read.torque_deviation, written.torque_deviation);
   EXPECT_EQ(read.stiffness, written.stiffness);
   EXPECT_EQ(read.rest, written.rest);
+  EXPECT_EQ(read.levers, written.levers);
   EXPECT_EQ(read.row_parameters.size(), written.row_parameters.size());
   EXPECT_EQ(read.gravity_parameters.size(), written.gravity_parameters.size());
   EXPECT_LT(difference(read.chain.tip().p, written.chain.tip().p), kRounding);
@@ -83,6 +84,9 @@ TEST(ModelFileWriter, WhatIdentificationFindsComesBackDigitByDigit) {
   robot.seen.assign(7, {{-1.0 / 3, 2}, {-1e-7, 1.5}, {-9, 12.125}});
   robot.stiffness = Eigen::VectorXd::LinSpaced(7, 1.0 / 3, 0);
   robot.rest = Eigen::VectorXd::LinSpaced(7, -1.0 / 7, 0);
+  robot.levers = Eigen::MatrixXd::Zero(2, 7);
+  robot.levers(1, 3) = 1.0 / 3;
+  robot.levers(0, 6) = -2.5;
   expectSame(robot, model(modelFileText(robot)));
 }
 
@@ -144,7 +148,8 @@ TEST(ModelFileWriter, MotorsThatMoveSeveralJointsComeBack) {
   M(2, 1) = 0.5;  // the wrist follows the right arm's motor, too, besides its own
   const std::vector<std::string> names = {"right_arm", "waist", "wire"};
   Model written(withMotors({described.chain, described.branches}, {M, {}, names, {0, 0, 0.3}}));
-  for (const double fc : {1.0, 2.0, 3.0}) written.friction.emplace_back(SmoothCoulomb{0.5, fc, 0.1});
+  for (const double fc : {1.0, 2.0, 3.0})
+    written.friction.emplace_back(SmoothCoulomb{0.5, fc, 0.1});
   const std::string text = modelFileText(written);
   const Model read = model(text);
   EXPECT_EQ(read.chain.jointNames(), names);
@@ -155,11 +160,13 @@ TEST(ModelFileWriter, MotorsThatMoveSeveralJointsComeBack) {
   torques(written, q, qd, qdd, of_written);
   torques(read, q, qd, qdd, of_read);
   EXPECT_LT((of_read - of_written).norm(), kRounding * (1 + of_written.norm()));
-  const Mechanism rotor = withLinks({read.chain, read.branches}, linksOf({read.chain, read.branches}),
-                                    Eigen::Vector3d(0, 0, 0.7));
+  const Mechanism rotor =
+      withLinks({read.chain, read.branches}, linksOf({read.chain, read.branches}),
+                Eigen::Vector3d(0, 0, 0.7));
   EXPECT_EQ(rotor.motor_inertia, (std::vector<double>{0, 0, 0.7}));
-  EXPECT_THAT(errorOf([&] { model(replaced(text, "joint: \"right_arm\", xyz", "joint: wire, xyz")); }),
-              HasSubstr("expected a joint that moves a link, got the motor wire"));
+  EXPECT_THAT(
+      errorOf([&] { model(replaced(text, "joint: \"right_arm\", xyz", "joint: wire, xyz")); }),
+      HasSubstr("expected a joint that moves a link, got the motor wire"));
 }
 
 /// A continuous left arm that a right one follows.

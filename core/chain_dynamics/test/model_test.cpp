@@ -91,7 +91,7 @@ TEST(Model, EnergiesAreThoseOfInertiaAndGravity) {
   }
 }
 
-// g = g_bodies + k (q - rest), and all that follows from it.
+// g = g_bodies + k (q - rest) + a sin(q) + b cos(q), and all that follows from it.
 TEST(Model, SpringsAreAPartOfGravity) {
   constexpr double kStep = 1e-5;
   constexpr double kDifferences = 1e-7;
@@ -100,9 +100,15 @@ TEST(Model, SpringsAreAPartOfGravity) {
   const Eigen::VectorXd k = Eigen::VectorXd::LinSpaced(7, 3, -9), rest = k / 20;
   model.stiffness = k;
   model.rest = rest;
+  const Eigen::VectorXd a = 2 - rest.array(), b = 3 * rest;
+  model.levers = Eigen::MatrixXd(2, 7);
+  model.levers << a.transpose(), b.transpose();
   checkModel(model);
   const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(7, -2, 1.5), qd = -q, qdd = 2 * q;
-  const Eigen::VectorXd torque = k.cwiseProduct(q - rest);
+  const Eigen::VectorXd torque =
+      k.array() * (q - rest).array() + a.array() * q.array().sin() + b.array() * q.array().cos();
+  const Eigen::VectorXd slope =
+      k.array() + a.array() * q.array().cos() - b.array() * q.array().sin();
   Values without(7), with(7);
   without.compute(bare, q, qd, qdd);
   with.compute(model, q, qd, qdd);
@@ -119,7 +125,7 @@ TEST(Model, SpringsAreAPartOfGravity) {
   Eigen::MatrixXd by_q(7, 7), by_qd(7, 7), by_qdd(7, 7), by_q_bare(7, 7);
   torqueDerivatives(bare, q, qd, qdd, by_q_bare, by_qd, by_qdd);
   torqueDerivatives(model, q, qd, qdd, by_q, by_qd, by_qdd);
-  EXPECT_LT(difference(by_q, by_q_bare + Eigen::MatrixXd(k.asDiagonal())), kRounding);
+  EXPECT_LT(difference(by_q, by_q_bare + Eigen::MatrixXd(slope.asDiagonal())), kRounding);
   Eigen::VectorXd in_place = q;
   torques(model, in_place, qd, qdd, in_place);
   EXPECT_EQ(in_place, with.tau);

@@ -324,14 +324,22 @@ void setSprings(const Configuration& configuration, chain_dynamics::Model& model
         "springs." + model.chain.joints()[static_cast<std::size_t>(j)].name + ".";
     const auto stiffness = configuration.get<double>(spring + "stiffness");
     const auto rest = configuration.get<double>(spring + "rest");
-    if (!stiffness && !rest) continue;
-    if (!stiffness) {
+    const auto lever_sin = configuration.get<double>(spring + "lever_sin");
+    const auto lever_cos = configuration.get<double>(spring + "lever_cos");
+    if (!stiffness && !rest && !lever_sin && !lever_cos) continue;
+    if (rest && !stiffness) {
       configuration.refuse(spring + "rest", "none without a stiffness", std::to_string(*rest),
                            "state '" + configuration.fullName(spring) + "stiffness'");
     }
-    if (model.stiffness.size() == 0) model.rest = model.stiffness = Eigen::VectorXd::Zero(n);
-    model.stiffness[j] = *stiffness;
-    model.rest[j] = rest.value_or(0.0);
+    if (stiffness) {
+      if (model.stiffness.size() == 0) model.rest = model.stiffness = Eigen::VectorXd::Zero(n);
+      model.stiffness[j] = *stiffness;
+      model.rest[j] = rest.value_or(0.0);
+    }
+    if (lever_sin || lever_cos) {
+      if (model.levers.size() == 0) model.levers = Eigen::MatrixXd::Zero(2, n);
+      model.levers.col(j) << lever_sin.value_or(0.0), lever_cos.value_or(0.0);
+    }
     try {
       checkModel(model);
     } catch (const chain_dynamics::ModelError& e) {

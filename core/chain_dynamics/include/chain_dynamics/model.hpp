@@ -84,6 +84,10 @@ struct Model {
   OwnedVector stiffness = {};
   OwnedVector rest = {};
 
+  /// Empty: none. Otherwise 2 x n: the torque `a sin(q) + b cos(q)` of a spring that pulls a lever around,
+  /// a and b of each coordinate [N m; prismatic N]. As of springs, but of continuous joints, too.
+  OwnedMatrix levers = {};
+
   /// Empty: chain.links() for every row of H, C qd, g. Otherwise n sets of n links, and row j is
   /// that of a chain with set j; chain.links() are then without meaning.
   std::vector<std::vector<LinkParameters>> row_parameters = {};

@@ -47,6 +47,8 @@ inline namespace v2 {
 /// | motor_names                   | strings   | those of joints, or motor_1, ...            |
 /// | springs.<joint>.stiffness     | double    | none [N m/rad; prismatic N/m]               |
 /// | springs.<joint>.rest          | double    | 0: position of the spring at rest           |
+/// | springs.<joint>.lever_sin     | double    | 0: a of the torque a sin q + b cos q [N m]  |
+/// | springs.<joint>.lever_cos     | double    | 0: b of a spring that pulls a lever         |
 /// | allow_massless                | bool      | false                                       |
 /// | friction                      | bool      | true                                        |
 /// | urdf_friction                 | bool      | false: `<dynamics>` of the URDF isn't used  |

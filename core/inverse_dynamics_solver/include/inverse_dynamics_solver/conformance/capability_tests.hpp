@@ -433,6 +433,9 @@ inline Eigen::VectorXd torquesOf(const chain_dynamics::Model& model, const Regre
                                   : parametersOf(model.row_parameters[row]);
     tau[i] = Y.row(i).dot(p) + model.chain.joints()[row].rotor_inertia * x.qdd[i];
     if (model.stiffness.size() > 0) tau[i] += model.stiffness[i] * (x.q[i] - model.rest[i]);
+    if (model.levers.size() > 0) {
+      tau[i] += model.levers(0, i) * std::sin(x.q[i]) + model.levers(1, i) * std::cos(x.q[i]);
+    }
     if (model.gravity_parameters.empty()) continue;
     tau[i] += Y_g.row(i).dot(parametersOf(model.gravity_parameters) - p);
   }
