@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "friction_columns.hpp"
+#include "own_rows.hpp"
 
 namespace inverse_dynamics_identification {
 inline namespace v2 {
@@ -62,22 +63,19 @@ struct Curved {
   }
 };
 
-/// How far and how fast what has friction moves: motors, by the coupling, or joints.
+/// How far and how fast what has friction moves: by the coupling, or joints.
 class Reach {
  public:
-  explicit Reach(Index joints)
-      : greatest_(VectorXd::Zero(joints)),
-        lower_(VectorXd::Constant(joints, kInfinity)),
+  explicit Reach(Index laws)
+      : greatest_(VectorXd::Zero(laws)),
+        lower_(VectorXd::Constant(laws, kInfinity)),
         upper_(-lower_) {}
 
   void add(const ArmSamples& samples, const OwnedMatrix& coupling) {
     for (Index k = 0; k < samples.qd.count; ++k) {
-      for (Index j = 0; j < samples.qd.joints; ++j) {
-        double v = samples.qd(j, k), q = samples.q(j, k);
-        for (Index i = 0; i < j && coupling.size() > 0; ++i) {  // lower triangular
-          v += coupling(j, i) * samples.qd(i, k);
-          q += coupling(j, i) * samples.q(i, k);
-        }
+      for (Index j = 0; j < laws(); ++j) {
+        const double v = atLaw(coupling, j, [&](Index i) { return samples.qd(i, k); });
+        const double q = atLaw(coupling, j, [&](Index i) { return samples.q(i, k); });
         greatest_[j] = std::max(greatest_[j], std::abs(v));
         lower_[j] = std::min(lower_[j], q);
         upper_[j] = std::max(upper_[j], q);
@@ -85,7 +83,7 @@ class Reach {
     }
   }
 
-  Index joints() const { return greatest_.size(); }
+  Index laws() const { return greatest_.size(); }
   /// The greatest velocity.
   double velocity(Index j) const { return std::max(greatest_[j], kLeast); }
   /// From the least to the greatest position.
@@ -96,11 +94,11 @@ class Reach {
   VectorXd greatest_, lower_, upper_;
 };
 
-/// The curved unknowns of a joint.
-std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index joint, const Reach& reach) {
+/// The curved unknowns of a law and, if it is a joint's, of its drive gain.
+std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index law, const Reach& reach) {
   using namespace own_column;
   const FrictionPrior& prior = options.friction;
-  const double greatest = reach.velocity(joint), range = reach.range(joint);
+  const double greatest = reach.velocity(law), range = reach.range(law);
   const double factor = std::log(prior.width_factor);
   const double shift = (options.shift ? prior.shift : kHeld) * greatest;
   const double most_shift = options.shift ? prior.most_shift * greatest : 0.0;
@@ -116,8 +114,8 @@ std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index joint, co
     curved.push_back({kDistance, &StepFriction::distance, true, prior.distance * range, factor,
                       prior.least_distance * range, prior.most_distance * range});
   }
-  if (options.drive_gains.size() > 0) {
-    curved.push_back({ownColumns(options.terms), nullptr, true, options.drive_gains[joint],
+  if (options.drive_gains.size() > law) {
+    curved.push_back({ownColumns(options.terms), nullptr, true, options.drive_gains[law],
                       std::log(kDriveGainFactor), 0, kInfinity, kSettledGain});
   }
   return curved;
@@ -156,19 +154,22 @@ void checkOptions(Index joints, const ArmFitOptions& options) {
 }
 
 /// The unknowns of a fit, the steps of those that it isn't linear in zero.
-Fit linearPart(const ArmFit& arm, FrictionTerms terms) {
+Fit linearPart(const ArmFit& arm, const OwnRows& rows) {
   Fit fit;
   fit.parameters = arm.parameters;
   fit.noise = fit.weighed_by = arm.noise;
-  const Index columns = ownColumns(terms);
-  fit.own =
-      MatrixXd::Zero(columns + (arm.drive_gains.size() > 0 ? 1 : 0), arm.rotor_inertia.size());
+  fit.own = MatrixXd::Zero(rows.columns(), arm.rotor_inertia.size());
   fit.own.row(own_column::kAcceleration) = arm.rotor_inertia.transpose();
   for (Index j = 0; j < fit.own.cols(); ++j) {
-    for (const auto& [c, coefficient] : kLinear) {
-      if (c < columns) fit.own(c, j) = arm.friction[static_cast<std::size_t>(j)].*coefficient;
+    for (const OwnRows::Place& place : rows.of(j)) {
+      for (const auto& [c, coefficient] : kLinear) {
+        if (c >= rows.lawColumns()) continue;
+        fit.own(place.first + c, j) =
+            arm.friction[static_cast<std::size_t>(place.law)].*coefficient;
+      }
     }
   }
+  if (arm.springs.size() > 0) fit.own.bottomRows(2) = arm.springs;
   return fit;
 }
 
@@ -177,12 +178,14 @@ class Rounds {
  public:
   using GramAt = std::function<RegressorGram(const ArmFit&)>;
 
-  Rounds(const std::vector<LinkPrior>& links, Reach reach, const ArmFitOptions& options)
+  Rounds(const std::vector<LinkPrior>& links, const OwnRows& rows, Reach reach,
+         const ArmFitOptions& options)
       : links_(links),
+        rows_(rows),
         options_(options),
         has_gains_(options.drive_gains.size() > 0),
         reach_(std::move(reach)) {
-    for (Index j = 0; j < reach_.joints(); ++j) {
+    for (Index j = 0; j < laws(); ++j) {
       curved_.push_back(curvedUnknowns(options, j, reach_));
     }
   }
@@ -191,13 +194,20 @@ class Rounds {
   Prior prior(const ArmFit& fit, bool linear) const {
     Prior prior;
     for (const LinkPrior& link : links_) prior.links.push_back(link.link);
-    const std::vector<Index> columns = linearColumns(options_.terms);
-    if (linear) prior.columns = columns;
+    if (linear) prior.columns = linearOnes();
     for (Index j = 0; j < joints(); ++j) {
-      std::vector<OwnColumn> all(columns.size() + curvedOf(j).size());
-      for (const Index c : columns) all[at(c)] = linearColumn(c, options_.friction);
-      for (const Curved& unknown : curvedOf(j)) {
-        all[at(unknown.column)] = {false, kInfinity, -unknown.distance(fit, j), unknown.deviation};
+      // of springs and of columns without unknown, as of offsets
+      std::vector<OwnColumn> all(at(rows_.columns()),
+                                 linearColumn(own_column::kOne, options_.friction));
+      for (const auto& [k, joint, factor, first] : rows_.of(j)) {
+        for (const Index c : linearColumns(options_.terms)) {
+          all[at(first + c)] = linearColumn(c, options_.friction);
+        }
+        for (const Curved& unknown : curvedOf(k)) {
+          if (unknown.value == nullptr && k != j) continue;
+          all[at(first + unknown.column)] = {false, kInfinity, -unknown.distance(fit, k),
+                                             unknown.deviation};
+        }
       }
       if (!linear) prior.own.insert(prior.own.end(), all.begin(), all.end());
       for (const Index c : prior.columns) prior.own.push_back(all[at(c)]);
@@ -216,13 +226,13 @@ class Rounds {
       if (options_.terms < FrictionTerms::kMemory) law.fm = 0;
       if (!options_.shift) law.shift = 0;
     }
-    for (Index j = 0; j < joints(); ++j) {  // of a start without memory
+    for (Index j = 0; j < laws(); ++j) {  // of a start without memory
       double& distance = tried.friction[at(j)].distance;
       if (distance == 0) distance = options_.friction.distance * reach_.range(j);
     }
     int pass = 1;
     if (start != nullptr) {
-      last_ = linearPart(tried, options_.terms);
+      last_ = linearPart(tried, rows_);
     } else if (options_.most_passes > 1) {  // no step without heights and loads
       last_ = linearFit(tried, gram_at(tried));
       tried = with(tried, last_);
@@ -263,8 +273,21 @@ class Rounds {
 
   static std::size_t at(Index j) { return static_cast<std::size_t>(j); }
 
-  Index joints() const { return static_cast<Index>(curved_.size()); }
-  const std::vector<Curved>& curvedOf(Index j) const { return curved_[at(j)]; }
+  Index joints() const { return static_cast<Index>(rows_.unknowns().size()); }
+  Index laws() const { return rows_.laws(); }
+  const std::vector<Curved>& curvedOf(Index law) const { return curved_[at(law)]; }
+
+  /// The columns of rows that a fit is linear in.
+  std::vector<Index> linearOnes() const {
+    std::vector<Index> columns = linearColumns(options_.terms);
+    const std::vector<Index> of_law = columns;
+    const Index own = rows_.lawColumns() + (has_gains_ ? 1 : 0);
+    for (Index first = own; first < rows_.springs(); first += rows_.lawColumns()) {
+      for (const Index c : of_law) columns.push_back(first + c);
+    }
+    for (Index c = rows_.springs(); c < rows_.columns(); ++c) columns.push_back(c);
+    return columns;
+  }
 
   ArmFit beginning() const {
     ArmFit fit;
@@ -273,7 +296,7 @@ class Rounds {
     for (Index i = 0; i < fit.parameters.cols(); ++i) {
       fit.parameters.col(i) = links_[at(i)].link.toVector();
     }
-    for (Index j = 0; j < joints(); ++j) {
+    for (Index j = 0; j < laws(); ++j) {
       StepFriction& law = fit.friction.emplace_back();
       law.width = options_.friction.width * reach_.velocity(j);
       law.vs = options_.friction.stribeck_velocity * reach_.velocity(j);
@@ -300,11 +323,14 @@ class Rounds {
     next.parameters = fit.parameters;
     next.rotor_inertia = fit.own.row(own_column::kAcceleration).transpose();
     next.noise = fit.noise;
-    for (Index j = 0; j < joints(); ++j) {
+    for (Index k = 0; k < laws(); ++k) {
+      const OwnRows::Place& home = rows_.home(k);
       for (const auto& [c, coefficient] : kLinear) {
-        next.friction[at(j)].*coefficient = c < ownColumns(options_.terms) ? fit.own(c, j) : 0.0;
+        next.friction[at(k)].*coefficient =
+            c < rows_.lawColumns() ? fit.own(home.first + c, home.joint) : 0.0;
       }
     }
+    if (rows_.springs() < rows_.columns()) next.springs = fit.own.bottomRows(2);
     return next;
   }
 
@@ -313,32 +339,38 @@ class Rounds {
     const auto N = static_cast<double>(samples);
     double sum = fit.cost - N * (fit.noise.array() / fit.weighed_by.array()).square().sum() +
                  2 * N * fit.noise.array().log().sum();
-    for (Index j = 0; j < joints(); ++j) {
+    for (Index j = 0; j < laws(); ++j) {
       for (const Curved& unknown : curvedOf(j)) {
         const double deviations = unknown.distance(arm, j) / unknown.deviation;
         sum += deviations * deviations;
       }
-      if (has_gains_) sum -= 2 * N * std::log(arm.drive_gains[j]);
+      if (has_gains_ && j < joints()) sum -= 2 * N * std::log(arm.drive_gains[j]);
     }
     return sum;
   }
 
-  /// Step of each curved unknown and joint, from the last fit.
+  /// Step of each curved unknown and law, from the last fit.
   MatrixXd stepOf(const RegressorGram& gram, const ArmFit& arm) const {
     const Fit fit = consistentFit(gram, prior(arm, false), fitOptions(1), &last_);
-    MatrixXd by(static_cast<Index>(curvedOf(0).size()), joints());
-    for (Index i = 0; i < by.rows(); ++i) by.row(i) = fit.own.row(curvedOf(0)[at(i)].column);
+    MatrixXd by = MatrixXd::Zero(static_cast<Index>(curvedOf(0).size()), laws());
+    for (Index k = 0; k < laws(); ++k) {
+      Index i = 0;
+      const OwnRows::Place& home = rows_.home(k);
+      for (const Curved& unknown : curvedOf(k)) {
+        by(i++, k) = fit.own(home.first + unknown.column, home.joint);
+      }
+    }
     return by;
   }
 
   ArmFit moved(const ArmFit& fit, const MatrixXd& by) const {
     ArmFit result = fit;
-    for (Index j = 0; j < joints(); ++j) {
+    for (Index j = 0; j < laws(); ++j) {
       StepFriction& law = result.friction[at(j)];
-      for (Index i = 0; i < by.rows(); ++i) {
-        const Curved& unknown = curvedOf(j)[at(i)];
+      Index i = 0;
+      for (const Curved& unknown : curvedOf(j)) {
         double& value = unknown.value != nullptr ? law.*unknown.value : result.drive_gains[j];
-        value = unknown.moved(fit, j, by(i, j));
+        value = unknown.moved(fit, j, by(i++, j));
       }
       law.vs = std::max(law.vs, 2 * law.width);
     }
@@ -346,20 +378,21 @@ class Rounds {
   }
 
   bool settled(const MatrixXd& by, const ArmFit& fit) const {
-    for (Index j = 0; j < joints(); ++j) {
-      for (Index i = 0; i < by.rows(); ++i) {
-        const Curved& unknown = curvedOf(j)[at(i)];
-        if (std::abs(by(i, j)) > unknown.settled * unknown.unit(fit, j)) return false;
+    for (Index j = 0; j < laws(); ++j) {
+      Index i = 0;
+      for (const Curved& unknown : curvedOf(j)) {
+        if (std::abs(by(i++, j)) > unknown.settled * unknown.unit(fit, j)) return false;
       }
     }
     return true;
   }
 
   const std::vector<LinkPrior>& links_;
+  const OwnRows& rows_;
   const ArmFitOptions& options_;
-  bool has_gains_;                           // whether they are fitted
+  bool has_gains_;  // whether they are fitted
   Reach reach_;
-  std::vector<std::vector<Curved>> curved_;  // of each joint
+  std::vector<std::vector<Curved>> curved_;  // of each law
   Fit last_;  // of the last pass that was no worse, or what to start from
 };
 
@@ -381,33 +414,43 @@ Model withoutMotors(const Mechanism& description, const std::vector<LinkPrior>& 
 }  // namespace
 
 ArmFitter::ArmFitter(const Mechanism& description, const LinkFloor& floor,
-                     const OwnedMatrix& coupling)
+                     const OwnedMatrix& coupling, std::vector<SpringTerms> springs,
+                     std::vector<std::string> places)
     : robot_(description),
       coupling_(coupling),
+      springs_(std::move(springs)),
+      places_(std::move(places)),
       prior_(priorsOf(description, floor)),
       fast_(withoutMotors(description, prior_)) {
-  const Index n = joints();
-  withLinks(description, chain_dynamics::linksOf(description), VectorXd::Ones(n));  // throws
-  if (coupling.size() == 0 ||
-      (coupling.rows() == n && coupling.cols() == n && coupling.allFinite() &&
-       coupling.isLowerTriangular(0) && coupling.diagonal().isOnes(0))) {
-    return;
+  const Index n = joints(), laws = coupling.rows();
+  if (!springs_.empty() && static_cast<Index>(springs_.size()) != n) {
+    throw ModelError("ArmFitter: springs", "", std::to_string(n) + ", one for each joint, or none",
+                     std::to_string(springs_.size()), "");
   }
+  const bool fits = coupling.cols() == n && laws >= n &&
+                    laws <= chain_dynamics::kMostFrictionLaws && coupling.allFinite() &&
+                    (coupling.array() != 0).rowwise().any().all();
+  for (Index k = 0; k < laws - n && places_.size() < static_cast<std::size_t>(laws - n); ++k) {
+    places_.push_back("place " + std::to_string(k + 1));
+  }
+  if (coupling.size() == 0 || fits) return;
   throw ModelError("ArmFitter: coupling", "",
-                   std::to_string(n) + " rows, lower triangular with ones on the diagonal",
-                   "others",
-                   "order joints from root to tip; motors may turn with joints before theirs");
+                   std::to_string(n) + " to " + std::to_string(chain_dynamics::kMostFrictionLaws) +
+                       " rows of " + std::to_string(n) + " finite numbers, not all of a row zero",
+                   std::to_string(laws) + " x " + std::to_string(coupling.cols()),
+                   "state a row for the friction of each joint, then one for each other place");
 }
 
-bool ArmFitter::isCoupled(Index j) const {
-  return coupling_.size() > 0 && (coupling_.row(j).array() != 0).count() > 1;
+OwnRows ArmFitter::rowsOf(FrictionTerms terms, bool has_gains) const {
+  return {coupling_, springs_, joints(), terms, has_gains};
 }
 
 void ArmFitter::check(const ArmFit& fit) const {
   const Index n = joints();
   const bool fits = fit.parameters.rows() == 10 && fit.parameters.cols() == links() &&
                     fit.rotor_inertia.size() == n && areGains(n, fit.drive_gains) &&
-                    static_cast<Index>(fit.friction.size()) == n;
+                    static_cast<Index>(fit.friction.size()) == laws() &&
+                    fit.springs.size() == (springs_.empty() ? 0 : 2 * n);
   if (!fits) {
     throw ModelError(
         "ArmFitter: fit", "parameters, rotor_inertia, friction",
@@ -424,7 +467,7 @@ ArmFit ArmFitter::fit(const ArmData& data, const ArmFitOptions& options,
   checkOptions(joints(), options);
   std::vector<const ArmData::Block*> blocks;
   RegressorGram links = fast_.emptyGram();
-  Reach reach(joints());
+  Reach reach(laws());
   for (std::size_t b = 0; b < data.blocks_.size(); ++b) {
     if (static_cast<int>(b) == options.without) continue;
     blocks.push_back(&data.blocks_[b]);
@@ -433,10 +476,11 @@ ArmFit ArmFitter::fit(const ArmData& data, const ArmFitOptions& options,
   }
   if (links.samples() == 0) throw ModelError("ArmFitter: expected samples, got none");
   const auto gram_at = [&](const ArmFit& fit) { return gramOf(fit, options.terms, blocks, links); };
-  ArmFit found = Rounds(prior_, reach, options).run(start, gram_at);
-  for (Index j = 0; j < joints(); ++j) {
+  const OwnRows rows = rowsOf(options.terms, options.drive_gains.size() > 0);
+  ArmFit found = Rounds(prior_, rows, reach, options).run(start, gram_at);
+  for (Index j = 0; j < laws(); ++j) {
     StepFriction& law = found.friction[static_cast<std::size_t>(j)];
-    if (isCoupled(j)) law.fl = 0;
+    if (isCoupled(coupling_, j)) law.fl = 0;
     if (law.fm == 0) law.distance = 0;
   }
   return found;
@@ -451,17 +495,25 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const ArmData& data,
     throw ModelError("ArmFitter: fit", "noise", std::to_string(joints()) + " numbers",
                      std::to_string(fit.noise.size()), "take a fit to samples");
   }
-  const Fit linear = linearPart(fit, options.terms);
-  RegressorGram all = fast_.emptyGram(linear.own.rows());
+  const OwnRows rows = rowsOf(options.terms, fit.drive_gains.size() > 0);
+  const Fit linear = linearPart(fit, rows);
+  RegressorGram all = fast_.emptyGram(rows.columns());
+  all.share(rows.unknowns());
   VectorXd x(all.unknowns());
-  x << Eigen::Map<const VectorXd>(linear.parameters.data(), linear.parameters.size()),
-      Eigen::Map<const VectorXd>(linear.own.data(), linear.own.size());
+  x.head(linear.parameters.size()) =
+      Eigen::Map<const VectorXd>(linear.parameters.data(), linear.parameters.size());
+  for (Index j = 0; j < joints(); ++j) {
+    for (Index c = 0; c < rows.columns(); ++c) {
+      if (all.unknownOf(j, c) >= 0)
+        x[linear.parameters.size() + all.unknownOf(j, c)] = linear.own(c, j);
+    }
+  }
   const VectorXd weights = fit.noise.array().square().inverse();
   ArmInformation result;
   result.scores.resize(x.size(), static_cast<Index>(data.blocks_.size()));
   MatrixXd A(x.size(), x.size());
   VectorXd b(x.size());
-  Reach reach(joints());
+  Reach reach(laws());
   for (std::size_t k = 0; k < data.blocks_.size(); ++k) {
     const ArmData::Block& block = data.blocks_[k];
     reach.add(block.samples, coupling_);
@@ -473,7 +525,7 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const ArmData& data,
   FitOptions how;
   how.prior_strength = options.prior_strength;
   Information found = ::inverse_dynamics_identification::information(
-      all, Rounds(prior_, reach, of).prior(fit, false), how, linear);
+      all, Rounds(prior_, rows, reach, of).prior(fit, false), how, linear);
   result.data = std::move(found.data);
   result.prior = std::move(found.prior);
   return result;

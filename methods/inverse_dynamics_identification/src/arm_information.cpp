@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "inverse_dynamics_identification/arm_fit.hpp"
+#include "own_rows.hpp"
 #include "whitening.hpp"
 
 namespace inverse_dynamics_identification {
@@ -48,7 +49,8 @@ struct WhitenedRows {
 OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms terms,
                                            const ArmData& data, const ResidualNoise& noise) const {
   check(fit);
-  const Index n = joints(), own = ownColumns(terms), rigid = 10 * links();
+  const OwnRows rows = rowsOf(terms, false);
+  const Index n = joints(), own = rows.columns(), rigid = 10 * links();
   if (noise.white.size() != n || noise.correlated.size() != n) {
     throw chain_dynamics::ModelError("ArmFitter.whitenedInformation", "noise",
                                      "numbers of each joint", "others", "take that of the samples");
@@ -60,7 +62,8 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
   }
   const chain_dynamics::FastModel alone(robotOf(fit.parameters, nullptr), fast_);
   MatrixXd Y(n, rigid);
-  VectorXd gravity(n), q(n), qd(n), qdd(n), own_row(own);
+  VectorXd gravity(n), q(n), qd(n), qdd(n), law_row(rows.lawColumns());
+  MatrixXd own_rows = MatrixXd::Zero(n, own);
   MeanSpan span(noise.correlation_time);
   double last = 0.0;  // s, of means
   const auto end_mean = [&] {
@@ -76,16 +79,17 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
           std::to_string(block.time.size()), "pair each sample with its time");
     }
     for (WhitenedRows& joint : whitened) joint.filter.restart();
-    std::vector<FittedPresliding> memories(static_cast<std::size_t>(n));
+    std::vector<FittedPresliding> memories(static_cast<std::size_t>(laws()));
     VectorXd before;
-    const auto of_motor = [&](Index j, const VectorXd& x) {
-      return coupling_.size() > 0 ? coupling_.row(j).dot(x) : x[j];
-    };
     const auto remember = [&] {
-      for (Index j = 0; j < n && before.size() > 0; ++j) {
-        move(memories[static_cast<std::size_t>(j)], of_motor(j, q) - of_motor(j, before),
-             fit.friction[static_cast<std::size_t>(j)]);
+      for (Index l = 0; l < laws() && before.size() > 0; ++l) {
+        const auto of_law = [&](const VectorXd& x) {
+          return atLaw(coupling_, l, [&](Index j) { return x[j]; });
+        };
+        move(memories[static_cast<std::size_t>(l)], of_law(q) - of_law(before),
+             fit.friction[static_cast<std::size_t>(l)]);
       }
+      before = q;
     };
     for (Index k = 0; k < block.before.count; ++k) {
       for (Index j = 0; j < n; ++j) q[j] = block.before(j, k);
@@ -105,24 +109,35 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
       for (Index j = 0; j < n; ++j) {
         WhitenedRows& joint = whitened[static_cast<std::size_t>(j)];
         joint.row.head(rigid) += Y.row(j).transpose();
-        const StepFriction& law = fit.friction[static_cast<std::size_t>(j)];
-        ownColumnsAt(law, of_motor(j, qd), qdd[j], isCoupled(j) ? 0.0 : std::abs(gravity[j]),
-                     memories[static_cast<std::size_t>(j)], own_row);
-        joint.row.tail(own) += own_row;
+      }
+      const auto memory = [&](Index law) -> const FittedPresliding& {
+        return memories[static_cast<std::size_t>(law)];
+      };
+      fillOwnRows(rows, coupling_, springs_, fit.friction, q, qd, qdd, gravity, memory, law_row,
+                  own_rows);
+      for (Index j = 0; j < n; ++j) {
+        whitened[static_cast<std::size_t>(j)].row.tail(own) += own_rows.row(j).transpose();
       }
     }
     if (!span.isEmpty()) end_mean();
   }
   OwnedMatrix information;
-  information.resize(rigid + own * n, rigid + own * n);
+  information.resize(rigid + rows.unknownCount(), rigid + rows.unknownCount());
   information.setZero();
   for (Index j = 0; j < n; ++j) {
     const MatrixXd sum = whitened[static_cast<std::size_t>(j)].sum.selfadjointView<Eigen::Lower>();
-    const Index at = rigid + own * j;
+    const std::vector<int>& unknowns = rows.unknowns()[static_cast<std::size_t>(j)];
     information.topLeftCorner(rigid, rigid) += sum.topLeftCorner(rigid, rigid);
-    information.block(0, at, rigid, own) = sum.topRightCorner(rigid, own);
-    information.block(at, 0, own, rigid) = sum.bottomLeftCorner(own, rigid);
-    information.block(at, at, own, own) = sum.bottomRightCorner(own, own);
+    for (Index c = 0; c < own; ++c) {
+      const Index to = rigid + unknowns[static_cast<std::size_t>(c)];
+      if (to < rigid) continue;
+      information.col(to).head(rigid) += sum.col(rigid + c).head(rigid);
+      information.row(to).head(rigid) += sum.row(rigid + c).head(rigid);
+      for (Index i = 0; i < own; ++i) {
+        const Index from = rigid + unknowns[static_cast<std::size_t>(i)];
+        if (from >= rigid) information(from, to) += sum(rigid + i, rigid + c);
+      }
+    }
   }
   return information;
 }

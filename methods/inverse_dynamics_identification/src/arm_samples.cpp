@@ -19,6 +19,7 @@
 
 #include "friction_columns.hpp"
 #include "inverse_dynamics_identification/arm_fit.hpp"
+#include "own_rows.hpp"
 
 namespace inverse_dynamics_identification {
 inline namespace v2 {
@@ -59,25 +60,28 @@ void checkSamples(Index joints, const ArmSamples& block) {
 /// Own columns and torques of a few samples at a fit.
 class Batch {
  public:
-  Batch(const ArmFit& fit, FrictionTerms terms, const OwnedMatrix& coupling)
+  Batch(const ArmFit& fit, const OwnRows& of, const OwnedMatrix& coupling,
+        const std::vector<SpringTerms>& springs)
       : fit_(fit),
+        rows_(of),
         coupling_(coupling),
+        springs_(springs),
         has_gains_(fit.drive_gains.size() > 0),
-        columns_(ownColumns(terms)),
+        law_(of.lawColumns(), kBatch),
         gravity_(fit.rotor_inertia.size(), kBatch),
         tau_(gravity_.rows(), kBatch) {
     loaded_.resizeLike(gravity_);
     alone_.resizeLike(gravity_);
-    own_.resize(static_cast<std::size_t>(columns_ + (has_gains_ ? 1 : 0)));
-    for (Rows& column : own_) column.resizeLike(gravity_);
+    own_.resize(static_cast<std::size_t>(of.columns()));
+    for (Rows& column : own_) column.setZero(gravity_.rows(), kBatch);
   }
 
   /// The next rows are of another block, with these positions before.
   void restart(const ConstStates& before) {
     memories_.assign(fit_.friction.size(), {});
     if (before.count == 0) return;
-    for (Index j = 0; j < before.joints; ++j) {
-      presliding(fit_.friction[static_cast<std::size_t>(j)], j, atMotor(before, j));
+    for (Index k = 0; k < rows_.laws(); ++k) {
+      presliding(fit_.friction[static_cast<std::size_t>(k)], k, ofLaw(k, before));
     }
   }
 
@@ -89,20 +93,14 @@ class Batch {
     loaded.gravityVectorBatch(q, gravity_.leftCols(size));
     if (has_gains_ || carries) loaded.torquesBatch(q, qd, qdd, loaded_.leftCols(size));
     if (carries) alone.torquesBatch(q, qd, qdd, alone_.leftCols(size));
+    for (Index k = 0; k < rows_.laws(); ++k) addLaw(k, samples);
     for (Index j = 0; j < q.joints; ++j) {
-      const StepFriction& law = fit_.friction[static_cast<std::size_t>(j)];
       const auto part = [&](auto& of) { return of.row(j).head(size).array(); };
-      Values load = part(gravity_).abs();
-      const Values acceleration = valuesOf(qdd, j);
-      if (coupling_.size() > 0 && !coupling_.row(j).head(j).isZero(0)) load.setZero();
-      frictionColumns(law, atMotor(qd, j), acceleration, load, presliding(law, j, atMotor(q, j)),
-                      columns_,
-                      [&](Index c) { return part(own_[static_cast<std::size_t>(c)]); });
+      if (!springs_.empty()) addSpring(j, valuesOf(q, j));
       part(tau_) = (has_gains_ ? fit_.drive_gains[j] : 1.0) * valuesOf(samples.tau, j);
       if (carries) part(tau_) -= part(loaded_) - part(alone_);
-      if (has_gains_) part(own_.back()) = -part(loaded_) - linearPart(j, size);
+      if (has_gains_) part(ownAt(rows_.lawColumns())) = -part(loaded_) - linearPart(j, size);
     }
-    subtractCoupled(size);
     samples.tau = tau_.leftCols(size);
     for (const Rows& column : own_) samples.own_columns.emplace_back(column.leftCols(size));
     samples.links = false;
@@ -119,19 +117,15 @@ class Batch {
     return values;
   }
 
-  /// Positions or velocities of the motor of joint j.
-  Values atMotor(const ConstStates& states, Index j) const {
-    Values values = valuesOf(states, j);
-    for (Index i = 0; i < j && coupling_.size() > 0; ++i) {
-      if (coupling_(j, i) != 0) values += coupling_(j, i) * valuesOf(states, i);
-    }
-    return values;
+  /// Velocities or positions of a law.
+  Values ofLaw(Index law, const ConstStates& states) const {
+    return atLaw(coupling_, law, [&](Index j) { return valuesOf(states, j); });
   }
 
   /// Presliding of a law along these positions, after those of the batch before.
   PreslidingValues<Values> presliding(const StepFriction& law, Index j, const Values& position) {
     PreslidingValues<Values> found;
-    if (columns_ <= own_column::kMemory) return found;
+    if (rows_.lawColumns() <= own_column::kMemory) return found;
     found.z = found.unknown = found.z_by_distance = found.unknown_by_distance = position;
     auto& [memory, last] = memories_[static_cast<std::size_t>(j)];
     for (Index k = 0; k < position.size(); ++k) {
@@ -145,35 +139,73 @@ class Batch {
     return found;
   }
 
-  /// Takes friction of later motors off the torques of the joints that turn them.
-  void subtractCoupled(Index size) {
-    for (Index j = 0; j < coupling_.rows(); ++j) {
-      for (Index i = 0; i < j; ++i) {
-        if (coupling_(j, i) == 0) continue;
-        tau_.row(i).head(size).array() -= coupling_(j, i) * linearPart(j, size, 0.0);
+  Rows& ownAt(Index c) { return own_[static_cast<std::size_t>(c)]; }
+
+  /// Columns of law k in the rows of all joints that it acts on. Gravity stands in gravity_.
+  void addLaw(Index k, const GramSamples& samples) {
+    const Index size = samples.q.count, n = samples.q.joints;
+    const StepFriction& law = fit_.friction[static_cast<std::size_t>(k)];
+    const Values velocity = ofLaw(k, samples.qd), position = ofLaw(k, samples.q);
+    const bool is_joints = !isCoupled(coupling_, k);
+    const Values load =
+        is_joints ? Values(gravity_.row(k).head(size).array().abs()) : Values(Values::Zero(size));
+    const Values acceleration = k < n ? valuesOf(samples.qdd, k) : Values(Values::Zero(size));
+    frictionColumns(law, velocity, acceleration, load, presliding(law, k, position),
+                    rows_.lawColumns(), [&](Index c) { return law_.row(c).head(size).array(); });
+    for (Index j = 0; j < n; ++j) {
+      for (const OwnRows::Place& place : rows_.of(j)) {
+        if (place.law != k) continue;
+        for (Index c = 0; c < rows_.lawColumns(); ++c) {
+          const bool is_rotor = c == own_column::kAcceleration;
+          if (is_rotor && k != j) continue;
+          ownAt(place.first + c).row(j).head(size) =
+              (is_rotor ? 1.0 : place.factor) * law_.row(c).head(size);
+        }
       }
     }
   }
 
-  /// Torques of rotor and friction of a joint, from its columns.
-  Values linearPart(Index j, Index size) const {
-    return linearPart(j, size, fit_.rotor_inertia[j]);
+  void addSpring(Index j, const Values& q) {
+    const auto column = [&](Index c) {
+      return ownAt(rows_.springs() + c).row(j).head(q.size()).array();
+    };
+    switch (springs_[static_cast<std::size_t>(j)]) {
+      case SpringTerms::kNone:
+        break;
+      case SpringTerms::kLinear:
+        column(0) = q;
+        break;
+      case SpringTerms::kLever:
+        column(0) = q.sin();
+        column(1) = q.cos();
+        break;
+    }
   }
-  Values linearPart(Index j, Index size, double rotor_inertia) const {
+
+  /// Torques of rotor, friction and spring of a joint, from its columns.
+  Values linearPart(Index j, Index size) const {
     const auto column = [&](Index c) {
       return own_[static_cast<std::size_t>(c)].row(j).head(size).array();
     };
-    Values sum = rotor_inertia * column(own_column::kAcceleration);
-    for (const auto& [c, coefficient] : kLinear) {
-      if (c < columns_) sum += fit_.friction[static_cast<std::size_t>(j)].*coefficient * column(c);
+    Values sum = fit_.rotor_inertia[j] * column(own_column::kAcceleration);
+    for (const OwnRows::Place& place : rows_.of(j)) {
+      const StepFriction& law = fit_.friction[static_cast<std::size_t>(place.law)];
+      for (const auto& [c, coefficient] : kLinear) {
+        if (c < rows_.lawColumns()) sum += law.*coefficient * column(place.first + c);
+      }
+    }
+    for (Index c = 0; c < 2 && fit_.springs.size() > 0; ++c) {
+      sum += fit_.springs(c, j) * column(rows_.springs() + c);
     }
     return sum;
   }
 
   const ArmFit& fit_;
+  const OwnRows& rows_;
   const OwnedMatrix& coupling_;
+  const std::vector<SpringTerms>& springs_;
   bool has_gains_;
-  Index columns_;
+  Rows law_;                             // columns of one law
   Rows gravity_, tau_, loaded_, alone_;  // of each joint
   std::vector<Rows> own_;
   std::vector<std::pair<FittedPresliding, std::optional<double>>> memories_;  // and last positions
@@ -228,9 +260,11 @@ ArmData ArmFitter::data(std::vector<ArmSamples> blocks) const {
 RegressorGram ArmFitter::gramOf(const ArmFit& fit, FrictionTerms terms,
                                 const std::vector<const ArmData::Block*>& blocks,
                                 const RegressorGram& links) const {
-  RegressorGram gram = fast_.emptyGram(ownColumns(terms) + (fit.drive_gains.size() > 0 ? 1 : 0));
+  const OwnRows rows_of_joints = rowsOf(terms, fit.drive_gains.size() > 0);
+  RegressorGram gram = fast_.emptyGram(rows_of_joints.columns());
+  gram.share(rows_of_joints.unknowns());
   const FastModel alone(robotOf(fit.parameters, nullptr), fast_);
-  Batch batch(fit, terms, coupling_);
+  Batch batch(fit, rows_of_joints, coupling_, springs_);
   for (const ArmData::Block* block : blocks) {
     const ArmSamples& samples = block->samples;
     std::optional<FastModel> loaded;
@@ -254,6 +288,17 @@ Model ArmFitter::model(const ArmFit& fit) const {
   Model model = robotOf(fit.parameters, &fit.rotor_inertia);
   model.friction.assign(fit.friction.begin(), fit.friction.end());
   model.coupling = coupling_;
+  model.friction_places = places_;
+  if (springs_.empty()) return model;
+  model.rest = model.stiffness = VectorXd::Zero(joints());
+  model.levers = MatrixXd::Zero(2, joints());
+  for (Index j = 0; j < joints(); ++j) {
+    if (springs_[static_cast<std::size_t>(j)] == SpringTerms::kLinear) {
+      model.stiffness[j] = fit.springs(0, j);
+    } else {
+      model.levers.col(j) = fit.springs.col(j);
+    }
+  }
   return model;
 }
 

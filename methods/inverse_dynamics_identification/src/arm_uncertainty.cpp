@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "own_rows.hpp"
+
 namespace inverse_dynamics_identification {
 inline namespace v2 {
 namespace {
@@ -30,28 +32,33 @@ const Regressor& regressorOf(const InverseDynamicsSolver* solver) {
   return *regressor;
 }
 
-/// Own columns of each joint; none where the factor isn't one of so many joints and links.
-Index ownColumnsOf(const ArmUncertainty& uncertainty, Index joints, Index links) {
-  for (const FrictionTerms terms :
-       {FrictionTerms::kStep, FrictionTerms::kLoad, FrictionTerms::kStribeck,
-        FrictionTerms::kMemory}) {
-    if (uncertainty.factor.rows() == 10 * links + joints * ownColumns(terms)) {
-      return ownColumns(terms);
-    }
+/// The rows whose unknowns the factor has; null: of no terms of friction.
+std::shared_ptr<const OwnRows> rowsOf(const ArmUncertainty& uncertainty, Index joints,
+                                      Index links) {
+  for (const FrictionTerms terms : {FrictionTerms::kStep, FrictionTerms::kLoad,
+                                    FrictionTerms::kStribeck, FrictionTerms::kMemory}) {
+    auto rows = std::make_shared<const OwnRows>(uncertainty.coupling, uncertainty.springs, joints,
+                                                terms, false);
+    if (uncertainty.factor.rows() == 10 * links + rows->unknownCount()) return rows;
   }
-  return 0;
+  return nullptr;
 }
 
 void checkFits(const ArmUncertainty& uncertainty, Index joints, Index links) {
   const auto laws = static_cast<Index>(uncertainty.friction.size());
-  if (laws == joints && ownColumnsOf(uncertainty, joints, links) > 0 &&
-      uncertainty.factor.allFinite()) {
+  const auto& C = uncertainty.coupling;
+  const auto springs = static_cast<Index>(uncertainty.springs.size());
+  const bool is_of_joints =
+      C.size() == 0 ? laws == joints : C.cols() == joints && C.rows() == laws && laws >= joints;
+  if (is_of_joints && (springs == 0 || springs == joints) && uncertainty.factor.allFinite() &&
+      rowsOf(uncertainty, joints, links) != nullptr) {
     return;
   }
   throw InvalidParameterValueException(
       "arm uncertainty", "",
-      std::to_string(joints) + " laws of friction and finite numbers in 10 rows per link (" +
-          std::to_string(links) + ") and 6, 7, 9 or 11 per joint",
+      "laws of friction of " + std::to_string(joints) +
+          " joints and finite numbers in 10 rows per link (" + std::to_string(links) +
+          ") and 6, 7, 9 or 11 per joint",
       std::to_string(laws) + " laws and " + std::to_string(uncertainty.factor.rows()) + " rows" +
           (uncertainty.factor.allFinite() ? "" : ", not all of them finite"),
       "take that of the solver's own model");
@@ -76,9 +83,7 @@ std::vector<Index> numbersBefore(const InverseDynamicsSolver& solver, const Regr
 
 ArmDeviations::ArmDeviations(std::shared_ptr<const InverseDynamicsSolver> solver,
                              const ArmUncertainty& uncertainty)
-    : solver_(std::move(solver)),
-      regressor_(&regressorOf(solver_.get())),
-      friction_(uncertainty.friction) {
+    : solver_(std::move(solver)), regressor_(&regressorOf(solver_.get())), of_(uncertainty) {
   const Index n = solver_->jointCount();
   const Index links = regressor_->linkCount();
   checkFits(uncertainty, n, links);
@@ -86,22 +91,30 @@ ArmDeviations::ArmDeviations(std::shared_ptr<const InverseDynamicsSolver> solver
   Y_ = Eigen::MatrixXd::Zero(n, 10 * links);
   before_ = numbersBefore(*solver_, *regressor_);
   gravity_.setZero(n);
-  own_.setZero(ownColumnsOf(uncertainty, n, links));
+  rows_ = rowsOf(uncertainty, n, links);
+  law_.setZero(rows_->lawColumns());
+  own_ = Eigen::MatrixXd::Zero(n, rows_->columns());
 }
 
 void ArmDeviations::compute(const inverse_dynamics_solver::ConstVectorRef& q,
                             const inverse_dynamics_solver::ConstVectorRef& qd,
                             const inverse_dynamics_solver::ConstVectorRef& qdd,
                             inverse_dynamics_solver::MatrixRef D) {
-  const Index n = Y_.rows(), columns = own_.size();
+  const Index n = Y_.rows();
   regressor_->getRegressor(q, qd, qdd, Y_);
   solver_->getGravityVector(q, gravity_);
+  const FittedPresliding none;
+  fillOwnRows(
+      *rows_, of_.coupling, of_.springs, of_.friction, q, qd, qdd, gravity_,
+      [&](Index /*law*/) -> const FittedPresliding& { return none; }, law_, own_);
   for (Index j = 0; j < n; ++j) {
-    const StepFriction& law = friction_[static_cast<std::size_t>(j)];
-    ownColumnsAt(law, qd[j], qdd[j], std::abs(gravity_[j]), {}, own_);
     const Index before = before_[static_cast<std::size_t>(j)], moved = Y_.cols() - before;
     D.col(j).noalias() = factor_.middleCols(before, moved) * Y_.row(j).tail(moved).transpose();
-    D.col(j).noalias() += factor_.middleCols(Y_.cols() + columns * j, columns) * own_;
+    const std::vector<int>& unknowns = rows_->unknowns()[static_cast<std::size_t>(j)];
+    for (Index c = 0; c < own_.cols(); ++c) {
+      const int unknown = unknowns[static_cast<std::size_t>(c)];
+      if (unknown >= 0) D.col(j) += own_(j, c) * factor_.col(Y_.cols() + unknown);
+    }
   }
 }
 

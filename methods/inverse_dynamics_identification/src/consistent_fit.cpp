@@ -7,6 +7,8 @@
 #include <chain_dynamics/regressor_gram.hpp>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +37,12 @@ void requireSize(const char* what, Index expected, Index got) {
                    "give those of the same joints and columns");
 }
 
+/// Own unknowns that rows of joints have in common, and the numbers of links that none of these moves.
+struct Group {
+  std::vector<Index> unknowns;
+  Index before;
+};
+
 /// The rows of all joints: what normalEquations() adds up, kept apart so that weights may change.
 class Data {
  public:
@@ -47,6 +55,7 @@ class Data {
     if (columns_.empty()) {
       for (Index c = 0; c < all_columns_; ++c) columns_.push_back(c);
     }
+    number(gram);
     for (Index j = 0; j < joints_; ++j) {
       before_.push_back(kParameters * gram.firstLink(j));
       MatrixXd G(gram.rowSize(), gram.rowSize());
@@ -65,9 +74,53 @@ class Data {
   const std::vector<Index>& columns() const { return columns_; }
   Index ownColumns() const { return static_cast<Index>(columns_.size()); }
   Index links() const { return links_; }  // their numbers
-  /// Numbers of links that the joints don't move: those before it, of each.
-  const std::vector<Index>& before() const { return before_; }
-  Index unknowns() const { return links() + ownColumns() * joints_; }
+  Index unknowns() const { return links() + own_unknowns_; }
+  /// That of the k-th of columns() of a joint, behind those of the links; -1: none.
+  Index unknownOf(Index joint, Index k) const { return unknowns_(k, joint); }
+
+  /// Each own unknown once, with those that are in a row with it.
+  std::vector<Group> groups() const {
+    std::vector<Group> groups;
+    std::vector<std::size_t> group_of(at(own_unknowns_));  // that joins it, at last the last one
+    std::iota(group_of.begin(), group_of.end(), std::size_t{0});
+    const auto last_of = [&](std::size_t u) {
+      while (group_of[u] != u) u = group_of[u];
+      return u;
+    };
+    std::vector<Index> before(group_of.size(), links());
+    for (Index j = 0; j < joints_; ++j) {
+      std::size_t joined = group_of.size();
+      for (Index k = 0; k < ownColumns(); ++k) {
+        if (unknownOf(j, k) < 0) continue;
+        const std::size_t u = last_of(at(unknownOf(j, k)));
+        if (joined == group_of.size()) joined = u;
+        before[joined] = std::min({before[joined], before[u], before_[at(j)]});
+        group_of[u] = joined;
+      }
+    }
+    std::vector<std::size_t> place(group_of.size(), group_of.size());
+    for (std::size_t u = 0; u < group_of.size(); ++u) {
+      const std::size_t joined = last_of(u);
+      if (place[joined] == group_of.size()) {
+        place[joined] = groups.size();
+        groups.push_back({{}, before[joined]});
+      }
+      groups[place[joined]].unknowns.push_back(links() + static_cast<Index>(u));
+    }
+    return groups;
+  }
+
+  /// Priors of the unknowns, from those of all columns of all joints.
+  Prior ofUnknowns(const Prior& prior) const {
+    Prior result{prior.links, std::vector<OwnColumn>(at(own_unknowns_))};
+    for (Index j = joints_ - 1; j >= 0; --j) {
+      for (Index k = ownColumns() - 1; k >= 0; --k) {
+        if (unknownOf(j, k) < 0) continue;
+        result.own[at(unknownOf(j, k))] = prior.own[at(ownColumns() * j + k)];
+      }
+    }
+    return result;
+  }
 
   /// Root mean square of the torques of each joint.
   VectorXd torques() const {
@@ -84,7 +137,8 @@ class Data {
     row[last()] = -1;
     for (Index j = 0; j < joints_; ++j) {
       for (Index c = 0; c < ownColumns(); ++c) {
-        row[links() + columns_[at(c)]] = x[links() + ownColumns() * j + c];
+        const Index u = unknownOf(j, c);
+        row[links() + columns_[at(c)]] = u < 0 ? 0.0 : x[links() + u];
       }
       result[j] = std::sqrt(std::max(0.0, row.dot(grams_[at(j)] * row)));
     }
@@ -105,12 +159,16 @@ class Data {
       b.segment(before, moved) += w * G.col(last()).segment(before, moved);
       c += w * G(last(), last());
       for (Index k = 0; k < ownColumns(); ++k) {
+        if (unknownOf(j, k) < 0) continue;
         const auto column = w * G.col(links() + columns_[at(k)]);
-        const Index own = links() + ownColumns() * j, to = own + k;
-        A.col(to).segment(before, moved) = column.segment(before, moved);
-        A.row(to).segment(before, moved) = column.segment(before, moved);
-        for (Index i = 0; i < ownColumns(); ++i) A(own + i, to) = column[links() + columns_[at(i)]];
-        b[to] = column[last()];
+        const Index to = links() + unknownOf(j, k);
+        A.col(to).segment(before, moved) += column.segment(before, moved);
+        A.row(to).segment(before, moved) += column.segment(before, moved);
+        for (Index i = 0; i < ownColumns(); ++i) {
+          const Index u = unknownOf(j, i);
+          if (u >= 0) A(links() + u, to) += column[links() + columns_[at(i)]];
+        }
+        b[to] += column[last()];
       }
     }
   }
@@ -119,43 +177,58 @@ class Data {
   static std::size_t at(Index j) { return static_cast<std::size_t>(j); }
   Index last() const { return links() + all_columns_; }
 
-  Index joints_, links_, all_columns_, samples_;
+  /// Counts the unknowns of the columns that there are, in the order of the gram's.
+  void number(const RegressorGram& gram) {
+    unknowns_.resize(ownColumns(), joints_);
+    std::map<Index, Index> numbers;
+    const auto of_gram = [&](Index k, Index j) { return gram.unknownOf(j, columns_[at(k)]); };
+    for (Index j = 0; j < joints_; ++j) {
+      for (Index k = 0; k < ownColumns(); ++k) numbers[of_gram(k, j)];
+    }
+    numbers.erase(-1);
+    for (auto& [of, number] : numbers) number = own_unknowns_++;
+    numbers[-1] = -1;
+    for (Index j = 0; j < joints_; ++j) {
+      for (Index k = 0; k < ownColumns(); ++k) unknowns_(k, j) = numbers.at(of_gram(k, j));
+    }
+  }
+
+  Index joints_, links_, all_columns_, samples_, own_unknowns_ = 0;
+  Eigen::Matrix<Index, Eigen::Dynamic, Eigen::Dynamic> unknowns_;  // of columns_ x joints
   std::vector<Index> before_;
   std::vector<Index> columns_;  // of them all, those that there are unknowns for
   std::vector<MatrixXd> grams_;
 };
 
-/// Solves H x = b in place. First come the unknowns of the links; the own columns of a joint meet those of
-/// no other one, nor the numbers of links before those that it moves, and are eliminated. False: H isn't
-/// positive definite.
-bool solveInPlace(const MatrixXd& H, Index rigid, const std::vector<Index>& before, VectorXd& x) {
-  const auto joints = static_cast<Index>(before.size());
-  const Index own = (H.rows() - rigid) / joints;
+/// Solves H x = b in place. First come the unknowns of the links; the own ones of a group meet those of no
+/// other one, nor the numbers of links that it doesn't move, and are eliminated. False: H isn't positive
+/// definite.
+bool solveInPlace(const MatrixXd& H, Index rigid, const std::vector<Group>& groups, VectorXd& x) {
   MatrixXd rest = H.topLeftCorner(rigid, rigid);
   std::vector<Eigen::LLT<MatrixXd>> factors;
   std::vector<MatrixXd> couplings;
-  for (Index j = 0; j < joints; ++j) {
-    const Index at = rigid + own * j, moved = rigid - before[static_cast<std::size_t>(j)];
-    const Eigen::LLT<MatrixXd>& factor = factors.emplace_back(H.block(at, at, own, own));
+  std::vector<VectorXd> own_parts;
+  for (const auto& [unknowns, before] : groups) {
+    const Index moved = rigid - before;
+    const Eigen::LLT<MatrixXd>& factor = factors.emplace_back(MatrixXd(H(unknowns, unknowns)));
     if (factor.info() != Eigen::Success) return false;
-    MatrixXd& C = couplings.emplace_back(H.block(at, rigid - moved, own, moved));
+    MatrixXd& C = couplings.emplace_back(H(unknowns, Eigen::seqN(before, moved)));
     factor.matrixL().solveInPlace(C);
-    auto own_part = x.segment(at, own);
+    VectorXd& own_part = own_parts.emplace_back(x(unknowns));
     factor.matrixL().solveInPlace(own_part);
     rest.bottomRightCorner(moved, moved)
         .selfadjointView<Eigen::Lower>()
         .rankUpdate(C.transpose(), -1);
-    x.segment(rigid - moved, moved).noalias() -= C.transpose() * own_part;
+    x.segment(before, moved).noalias() -= C.transpose() * own_part;
   }
   const Eigen::LLT<MatrixXd> factor(rest);
   if (factor.info() != Eigen::Success) return false;
   auto links = x.head(rigid);
   factor.solveInPlace(links);
-  for (Index j = 0; j < joints; ++j) {
-    auto own_part = x.segment(rigid + own * j, own);
-    own_part.noalias() -= couplings[static_cast<std::size_t>(j)] *
-                          x.head(rigid).tail(rigid - before[static_cast<std::size_t>(j)]);
-    factors[static_cast<std::size_t>(j)].matrixU().solveInPlace(own_part);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    own_parts[g].noalias() -= couplings[g] * x.segment(groups[g].before, rigid - groups[g].before);
+    factors[g].matrixU().solveInPlace(own_parts[g]);
+    x(groups[g].unknowns) = own_parts[g];
   }
   return true;
 }
@@ -164,7 +237,7 @@ bool solveInPlace(const MatrixXd& H, Index rigid, const std::vector<Index>& befo
 class Cost {
  public:
   Cost(const Data& data, const Penalties& penalties, const VectorXd& noise)
-      : penalties_(penalties), links_(data.links()), before_(data.before()) {
+      : penalties_(penalties), links_(data.links()), groups_(data.groups()) {
     data.quadratic(noise, A_, b_, c_);
   }
 
@@ -223,7 +296,7 @@ class Cost {
     }
     VectorXd step = -scale.cwiseProduct(gradient);
     VectorXd solved = step;
-    for (double more = 1e-14; !solveInPlace(hessian, links_, before_, solved) && more < 1;
+    for (double more = 1e-14; !solveInPlace(hessian, links_, groups_, solved) && more < 1;
          more *= 10) {
       hessian.diagonal().array() += more;
       solved = step;
@@ -233,21 +306,29 @@ class Cost {
 
   const Penalties& penalties_;
   Index links_;
-  std::vector<Index> before_;
+  std::vector<Group> groups_;
   MatrixXd A_;
   VectorXd b_;
   double c_ = 0;
 };
 
+/// of(c, joint, unknown) of each own column that has one.
+template <class Of>
+void forEachOwn(const Data& data, const Of& of) {
+  for (Index j = 0; j < data.joints(); ++j) {
+    for (Index k = 0; k < data.ownColumns(); ++k) {
+      const Index unknown = data.unknownOf(j, k);
+      if (unknown >= 0) of(data.columns()[static_cast<std::size_t>(k)], j, data.links() + unknown);
+    }
+  }
+}
+
 VectorXd unknownsOf(const Fit& fit, const Data& data) {
   requireSize("parameters of the fit", data.links(), fit.parameters.size());
   requireSize("own columns of the fit", data.allColumns() * data.joints(), fit.own.size());
   VectorXd x(data.unknowns());
-  Index at = data.links();
-  x.head(at) = Eigen::Map<const VectorXd>(fit.parameters.data(), at);
-  for (Index j = 0; j < data.joints(); ++j) {
-    for (const Index c : data.columns()) x[at++] = fit.own(c, j);
-  }
+  x.head(data.links()) = Eigen::Map<const VectorXd>(fit.parameters.data(), data.links());
+  forEachOwn(data, [&](Index c, Index j, Index unknown) { x[unknown] = fit.own(c, j); });
   return x;
 }
 
@@ -255,10 +336,7 @@ Fit fitOf(const VectorXd& x, const Data& data) {
   Fit fit;
   fit.parameters = Eigen::Map<const MatrixXd>(x.data(), kParameters, data.links() / kParameters);
   fit.own = MatrixXd::Zero(data.allColumns(), data.joints());
-  Index at = data.links();
-  for (Index j = 0; j < data.joints(); ++j) {
-    for (const Index c : data.columns()) fit.own(c, j) = x[at++];
-  }
+  forEachOwn(data, [&](Index c, Index j, Index unknown) { fit.own(c, j) = x[unknown]; });
   fit.noise = data.noise(x);
   return fit;
 }
@@ -289,7 +367,7 @@ Fit consistentFit(const RegressorGram& gram, const Prior& prior, const FitOption
                   const Fit* start) {
   const Data data(gram, prior);
   check(data, prior, options);
-  const Penalties penalties(prior);
+  const Penalties penalties(data.ofUnknowns(prior));
   const double strength = options.prior_strength;
   VectorXd x = penalties.start();
   bool started = false;
@@ -328,7 +406,7 @@ Information information(const RegressorGram& gram, const Prior& prior, const Fit
   const Data data(gram, prior);
   check(data, prior, options);
   requireSize("noise of the fit", data.joints(), fit.weighed_by.size());
-  const Penalties penalties(prior);
+  const Penalties penalties(data.ofUnknowns(prior));
   const VectorXd x = unknownsOf(fit, data);
   const Cost cost(data, penalties, fit.weighed_by);
   VectorXd gradient = VectorXd::Zero(x.size());

@@ -202,17 +202,18 @@ TEST(ArmFitter, TellsOfATreeWhatSamplesSay) {
   EXPECT_LT((whitened - found.data).norm(), 1e-9 * found.data.norm());
 }
 
-TEST(ArmFitter, RefusesATreeWithAMotorThatNoJointFollowsAlone) {
+TEST(ArmFitter, FindsTheRotorOfAMotorThatNoJointFollowsAlone) {
   chain_dynamics::Mechanism mixed = tree(3, 1);
   for (chain_dynamics::Branch& branch : mixed.branches) {
     branch.S.push_back({0, 1, 0.5});  // the waist follows the left arm's motor, too
   }
-  try {
-    const ArmFitter fitter(mixed);
-    FAIL() << "it was taken";
-  } catch (const chain_dynamics::ModelError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("chest_joint"));
-  }
+  const Model truth(withLinks(mixed, linksOf(mixed), Eigen::Vector4d(0.6, 0.2, 0.1, 0.05)));
+  ASSERT_EQ(truth.motor_inertia[0], 0.6);
+  const ArmFitter fitter(mixed);
+  const ArmFit fit = fitter.fit({samplesOf(motionOf(truth, 4000, 1))}, {});
+  EXPECT_NEAR(fit.rotor_inertia[0], 0.6, 0.1);
+  EXPECT_EQ(fitter.model(fit).motor_inertia[0], fit.rotor_inertia[0]);
+  EXPECT_LT(errorOf(fitter, fit, motionOf(truth, 2000, 9)), 1.1 * kNoise);
 }
 
 /// Of an arm whose last motor turns with the joint before; its own joint has this part of the speed.
@@ -252,8 +253,87 @@ TEST(ArmFitter, FindsFrictionOfCoupledMotors) {
     EXPECT_EQ(fitter.model(fit).coupling, arm.coupling);
     checkModel(fitter.model(fit));
   }
-  const Eigen::Matrix3d upper = Eigen::Matrix3d(arm.coupling).transpose();
-  EXPECT_THROW(ArmFitter(threeJointArm(), {}, upper), chain_dynamics::ModelError);
+  EXPECT_THROW(ArmFitter(threeJointArm(), {}, Eigen::Matrix2d::Identity()),
+               chain_dynamics::ModelError);
+  EXPECT_THROW(
+      ArmFitter(threeJointArm(), {}, Eigen::Matrix3d(Eigen::Vector3d(1, 1, 0).asDiagonal())),
+      chain_dynamics::ModelError);
+}
+
+/// Friction of a motor that turns joints 2 and 3 as well, a spring and a lever.
+Model armWithMoreLaws() {
+  Model arm(threeJointArm());
+  arm.coupling = Eigen::MatrixXd{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -0.8, 1.2}};
+  arm.friction_places = {"belt"};
+  for (StepFriction law : knownFriction(FrictionTerms::kStep)) {
+    law.shift = 0;
+    arm.friction.emplace_back(law);
+  }
+  arm.friction.emplace_back(StepFriction{0.9, 1.4, 0.05});
+  arm.stiffness = Eigen::Vector3d(0, 4, 0);
+  arm.rest = Eigen::Vector3d::Zero();
+  arm.levers = Eigen::MatrixXd{{0, 0, 1.5}, {0, 0, -2.5}};
+  return arm;
+}
+
+TEST(ArmFitter, FindsFrictionOfFurtherPlacesAndSprings) {
+  const Model arm = armWithMoreLaws();
+  const std::vector<SpringTerms> springs = {SpringTerms::kNone, SpringTerms::kLinear,
+                                            SpringTerms::kLever};
+  const Chain description = threeJointArm(0.6);
+  const ArmFitter fitter(description, {}, arm.coupling, springs, arm.friction_places);
+  const ArmFitter without(description);
+  const Motion motion = motionOf(arm, 4000, 1), other = motionOf(arm, 2000, 9);
+  ArmFitOptions options;
+  options.prior_strength = 1;
+  const ArmFit fit = fitter.fit({samplesOf(motion)}, options);
+  EXPECT_LT(errorOf(fitter, fit, other), 1.1 * kNoise);
+  EXPECT_GT(errorOf(without, without.fit({samplesOf(motion)}, options), other), 3 * kNoise);
+  ASSERT_EQ(fit.friction.size(), 4);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto& law = std::get<StepFriction>(arm.friction[k]);
+    EXPECT_NEAR(fit.friction[k].fv, law.fv, 0.05) << k;
+    EXPECT_NEAR(fit.friction[k].fc, law.fc, 0.05 * law.fc + 0.01) << k;
+    EXPECT_NEAR(fit.friction[k].width, law.width, 0.2 * law.width) << k;
+  }
+  EXPECT_EQ(fit.friction[3].fo, 0);
+  const Model found = fitter.model(fit);
+  checkModel(found);
+  EXPECT_EQ(found.friction_places, arm.friction_places);
+  EXPECT_NEAR(found.stiffness[1], 4, 0.05);
+  EXPECT_LT((found.levers - arm.levers).cwiseAbs().maxCoeff(), 0.1);
+
+  ArmSamples samples = samplesOf(motion);
+  samples.time = Eigen::VectorXd::LinSpaced(4000, 0, 400);
+  const ArmData data = fitter.data({samples});
+  const ArmInformation information = fitter.information(fit, data, options);
+  ASSERT_EQ(information.data.rows(), 3 * 10 + 3 * 6 + 4 + 3);
+  ResidualNoise white;
+  white.white = fit.noise;
+  white.correlated = Eigen::VectorXd::Zero(3);
+  white.correlation_time = 1e-3;
+  const OwnedMatrix whitened = fitter.whitenedInformation(fit, options.terms, data, white);
+  EXPECT_LT((whitened - information.data).norm(), 1e-9 * information.data.norm());
+}
+
+TEST(ArmFitter, FindsDriveGainsWithFurtherPlacesAndSprings) {
+  const Model arm = armWithMoreLaws();
+  const Eigen::Vector3d gains(8, 12, 5);
+  const LinkParameters body = rod(2, 0.2);
+  const Model loaded = withBodyAtTip(arm, body);
+  Motion bare = motionOf(arm, 3000, 1), carrying = motionOf(loaded, 3000, 2);
+  for (Motion* const motion : {&bare, &carrying}) {
+    motion->tau = gains.cwiseInverse().asDiagonal() * motion->tau;
+  }
+  ArmSamples carried = samplesOf(carrying);
+  carried.carried = body;
+  const ArmFitter fitter(threeJointArm(0.8), {}, arm.coupling,
+                         {SpringTerms::kNone, SpringTerms::kLinear, SpringTerms::kLever});
+  ArmFitOptions options;
+  options.prior_strength = 1;
+  options.drive_gains = 1.5 * gains;
+  const ArmFit fit = fitter.fit({samplesOf(bare), carried}, options);
+  EXPECT_LT(((fit.drive_gains - gains).array() / gains.array()).abs().maxCoeff(), 0.05);
 }
 
 TEST(ArmFitter, TorquesAreThoseOfItsModel) {

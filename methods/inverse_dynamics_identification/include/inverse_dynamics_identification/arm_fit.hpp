@@ -11,7 +11,8 @@
 ///     fitter.torques(fit, q, qd, qdd, computed);
 ///
 /// The torque of joint j is `Y_j p + rotor_inertia_j qdd_j + f_j` [regressor_gram.hpp,
-/// friction_step.hpp]. All that is linear in it is fitted by consistentFit(); width and shift of the
+/// friction_step.hpp]; with a coupling C, `f = C' f_laws(C qd)` of any number of laws, and with springs also
+/// `k q` or `a sin q + b cos q`. All that is linear in it is fitted by consistentFit(); width and shift of the
 /// steps by Gauss-Newton steps, for which the samples are gone through again: 3 to 10 times. The
 /// load of friction is that of the fit before. What is the same for all fits, the products Y_j' Y_j, is
 /// summed once; up to 20 000 samples, their rows are kept, too. Memory doesn't grow with more.
@@ -37,6 +38,7 @@
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/regressor_gram.hpp>
 #include <chain_dynamics/states.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -110,41 +112,53 @@ struct ArmFitOptions {
 struct ArmFit {
   OwnedMatrix parameters;              ///< 10 x links, in link frames
   OwnedVector rotor_inertia;           ///< n; kg m^2 (prismatic kg)
-  std::vector<StepFriction> friction;  ///< n
+  std::vector<StepFriction> friction;  ///< n, or of each row of the coupling
   OwnedVector noise;                   ///< n; root mean square of the errors; N m (prismatic N)
   OwnedVector drive_gains;             ///< n; N m/A (prismatic N/A); empty: of measured torques
   double cost = 0;                     ///< what was minimised, up to a constant
   int passes = 0;
+  /// 2 x n: of linear springs k [N m/rad; prismatic N/m] and zero, of levers a and b [N m]; empty: no springs.
+  OwnedMatrix springs = {};
 };
 
 /// What samples and prior say of the unknowns at a fit: ten parameters of each link, then
-/// ownColumns(terms) of each joint, and one more of log(drive gain) where these were fitted; those of
-/// shift, log(width), log(vs), log(distance) and log(drive gain) are steps from the fit.
+/// ownColumns(terms) of each joint, and one more of log(drive gain) where these were fitted; then, of each
+/// law beyond those of joints, ownColumns(terms) without acceleration and offset; then k or a, b of springs.
+/// Those of shift, log(width), log(vs), log(distance) and log(drive gain) are steps from the fit.
 struct ArmInformation {
   OwnedMatrix data;    ///< unknowns x unknowns: half the second derivatives of the weighted squares
   OwnedMatrix prior;   ///< the same of prior and penalties
   OwnedMatrix scores;  ///< unknowns x blocks: half the negative gradients of each block's squares
 };
 
+class OwnRows;
+
 /// Fits models of one arm. Threads: safe.
 class ArmFitter {
  public:
   /// @param description  its links are the prior, once linkPrior() has seen to them.
-  /// @param coupling     of motors, as chain_dynamics::Model::coupling, lower triangular with ones on its
-  ///     diagonal: a joint's own friction is fitted to its torque less that of later motors. Motors that
-  ///     other joints turn too have no load friction. Empty: each joint has its own motor.
-  /// @throws chain_dynamics::ModelError  more than 64 joints, a mechanism that checkMechanism() refuses,
-  ///     or with a coordinate that no joint follows alone; another coupling.
+  /// @param coupling     r x n, r >= n, as chain_dynamics::Model::coupling: laws of friction act at the
+  ///     velocities `coupling qd`. Laws of rows that aren't their joint's alone have no load friction.
+  ///     Empty: each joint has its own law.
+  /// @param springs      n, of each joint what is fitted; empty: no springs.
+  /// @param places       names of the r - n other places with friction; empty: place 1, place 2, ...
+  /// @throws chain_dynamics::ModelError  more than 64 joints or 128 laws, a mechanism that checkMechanism()
+  ///     refuses, coupling or springs of another size, a row of zeros.
   explicit ArmFitter(const chain_dynamics::Mechanism& description, const LinkFloor& floor = {},
-                     const OwnedMatrix& coupling = {});
+                     const OwnedMatrix& coupling = {}, std::vector<SpringTerms> springs = {},
+                     std::vector<std::string> places = {});
   explicit ArmFitter(const chain_dynamics::Chain& description, const LinkFloor& floor = {},
-                     const OwnedMatrix& coupling = {})
-      : ArmFitter(chain_dynamics::Mechanism{description, {}}, floor, coupling) {}
+                     const OwnedMatrix& coupling = {}, std::vector<SpringTerms> springs = {},
+                     std::vector<std::string> places = {})
+      : ArmFitter(chain_dynamics::Mechanism{description, {}}, floor, coupling, std::move(springs),
+                  std::move(places)) {}
 
   const chain_dynamics::Mechanism& robot() const { return robot_; }
   /// The chain, or the coordinates of the mechanism.
   const chain_dynamics::Chain& description() const { return robot_.coordinates; }
   const OwnedMatrix& coupling() const { return coupling_; }
+  const std::vector<SpringTerms>& springs() const { return springs_; }
+  const std::vector<std::string>& frictionPlaces() const { return places_; }
   /// What was made of the links, and why.
   const std::vector<LinkPrior>& prior() const { return prior_; }
 
@@ -201,11 +215,13 @@ class ArmFitter {
   Gram gramOf(const ArmFit& fit, FrictionTerms terms,
               const std::vector<const ArmData::Block*>& blocks, const Gram& links) const;
 
-  /// Whether other joints turn the motor of joint j.
-  bool isCoupled(Eigen::Index j) const;
+  OwnRows rowsOf(FrictionTerms terms, bool has_gains) const;
+  Eigen::Index laws() const { return coupling_.size() == 0 ? joints() : coupling_.rows(); }
 
   chain_dynamics::Mechanism robot_;
   OwnedMatrix coupling_;
+  std::vector<SpringTerms> springs_;
+  std::vector<std::string> places_;
   std::vector<LinkPrior> prior_;
   chain_dynamics::FastModel fast_;
 };

@@ -9,7 +9,6 @@
 ///
 /// The unknowns of a fit are those of ArmInformation [arm_fit.hpp]. Their covariance is `factor factor'`,
 /// so torques near the model are those of the model plus `W factor z`, W their derivatives by the unknowns.
-/// Friction of coupled motors deviates as if they turned with their joints.
 
 #pragma once
 
@@ -27,13 +26,17 @@ inline namespace v2 {
 
 /// Of a model with n joints and m unknowns.
 struct ArmUncertainty {
-  /// n: the model's.
+  /// The model's: n, or of each row of the coupling.
   std::vector<StepFriction> friction;
   /// m x K: columns are independent deviations from the model, of one standard deviation each. Rows:
-  /// ten parameters of each link in the frames of the solver's regressor, then the own columns of each
-  /// joint.
+  /// ten parameters of each link in the frames of the solver's regressor, then own unknowns as those of
+  /// ArmInformation.
   chain_dynamics::OwnedMatrix factor;
+  chain_dynamics::OwnedMatrix coupling = {};  ///< as ArmFitter takes it
+  std::vector<SpringTerms> springs = {};      ///< likewise
 };
+
+class OwnRows;
 
 /// Torques of these deviations. Not thread-safe.
 class ArmDeviations {
@@ -59,11 +62,13 @@ class ArmDeviations {
  private:
   std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver_;
   const inverse_dynamics_solver::Regressor* regressor_;  // of the solver
-  std::vector<StepFriction> friction_;
+  ArmUncertainty of_;
+  std::shared_ptr<const OwnRows> rows_;
   chain_dynamics::OwnedMatrix factor_;  // K x m
   chain_dynamics::OwnedMatrix Y_;       // n x 10 links
   std::vector<Eigen::Index> before_;    // columns of Y_ that are zero in each row
-  chain_dynamics::OwnedVector gravity_, own_;
+  chain_dynamics::OwnedVector gravity_, law_;
+  chain_dynamics::OwnedMatrix own_;  // n x own columns
 };
 
 }  // namespace v2

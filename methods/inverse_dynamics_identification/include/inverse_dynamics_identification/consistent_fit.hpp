@@ -55,7 +55,8 @@ struct OwnColumn {
 /// Priors, from which the fit also starts.
 struct Prior {
   std::vector<LinkParameters> links;  ///< of all links, positive definite each: linkPrior()
-  std::vector<OwnColumn> own;         ///< of joint 1, of joint 2, ...; as many for each
+  /// Of joint 1, of joint 2, ...; as many for each. Of columns that share an unknown, the first counts.
+  std::vector<OwnColumn> own;
   /// Which of the gram's own columns these are, ascending; the coefficients of the others are zero.
   /// Empty: all of them.
   std::vector<Eigen::Index> columns = {};
@@ -71,7 +72,7 @@ struct FitOptions {
 /// A robot, and how well it fits.
 struct Fit {
   OwnedMatrix parameters;  ///< 10 x links, in the order of LinkParameters::toVector()
-  OwnedMatrix own;         ///< own columns x n
+  OwnedMatrix own;         ///< own columns x n; of columns that share an unknown, the same
   OwnedVector noise;       ///< n; root mean square of the errors under this fit; N m (prismatic N)
   OwnedVector weighed_by;  ///< n; the noise that the fit was made with
   double cost = 0;         ///< what was minimised, with that noise

@@ -28,15 +28,22 @@ enum class FrictionTerms {
   kMemory,    ///< fl, fs and fm, and the two last lag behind
 };
 
-/// The law of one joint.
+/// What is fitted of a joint's spring, by the number of its columns.
+enum class SpringTerms {
+  kNone,
+  kLinear,  ///< k q, whose rest is in the offset of friction
+  kLever,   ///< a sin q + b cos q, of a spring that pulls a lever around
+};
+
+/// One law of friction.
 using StepFriction = chain_dynamics::SmoothCoulomb;
 
 /// Own columns of the fit: qdd, qd, 1, step, df/dshift, df/dlog(width), and with their terms
 /// load step, Stribeck step, df/dlog(vs), z + u step, df/dlog(distance).
 namespace own_column {
 constexpr Eigen::Index kAcceleration = 0, kVelocity = 1, kOne = 2, kStep = 3, kShift = 4,
-                       kWidth = 5, kLoad = 6, kStribeck = 7, kStribeckVelocity = 8,
-                       kMemory = 9, kDistance = 10;
+                       kWidth = 5, kLoad = 6, kStribeck = 7, kStribeckVelocity = 8, kMemory = 9,
+                       kDistance = 10;
 }  // namespace own_column
 
 /// How many there are: 6, 7, 9 or 11.
