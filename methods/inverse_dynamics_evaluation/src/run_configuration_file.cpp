@@ -155,6 +155,25 @@ void readTable(const std::optional<LocatedValue>& value, RunConfiguration& robot
   map.rejectOthers();
 }
 
+// What `ids identify` fits beside friction of the joints.
+void readFitted(LocatedMap& top, RunConfiguration& robot) {
+  if (const auto places = top.optional("friction_at")) {
+    const LocatedMap all = places->map();
+    for (const auto& [name, velocity] : all.entries()) {
+      std::map<std::string, double>& factors = robot.friction_at[name];
+      const LocatedMap of_joints = velocity.map();
+      for (const auto& [joint, factor] : of_joints.entries()) factors[joint] = factor.number();
+      if (factors.empty()) velocity.fail("a factor of at least one joint's velocity");
+    }
+  }
+  if (const auto springs = top.optional("fit_springs")) {
+    const LocatedMap all = springs->map();
+    for (const auto& [joint, kind] : all.entries()) {
+      robot.fit_springs[joint] = kind.text({"linear", "lever"});
+    }
+  }
+}
+
 // ---------------------------------------------------------------------------------------------
 // Files
 
@@ -199,6 +218,7 @@ RunConfiguration readFile(const std::string& file) {
     robot.parameters = readSolverParameters(parameters->map());
   }
   readTable(top.optional("table"), robot);
+  readFitted(top, robot);
   robot.source = stripped(textOf(top.optional("source")));
   if (const auto simulation = top.optional("simulation")) {
     simulation->map();  // the simulator reads its contents

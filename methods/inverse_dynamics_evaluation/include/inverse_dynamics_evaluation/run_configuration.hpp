@@ -57,6 +57,10 @@ struct RunConfiguration {
   std::string source;              ///< where description and values come from
   /// G of `q_motor = G q`, where states of motors are recorded: n ratios, or n x n numbers row by row.
   std::vector<double> gears;
+  /// For identification: places beside the joints where friction acts, each with its velocity as factors of
+  /// those of joints; and what is fitted of the springs of joints, `linear` or `lever`.
+  std::map<std::string, std::map<std::string, double>> friction_at;
+  std::map<std::string, std::string> fit_springs;
 };
 
 /// Names of the run configurations that the sourced workspaces bring, sorted.
