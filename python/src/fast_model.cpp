@@ -101,20 +101,13 @@ std::vector<chain_dynamics::LinkParameters> linksOf(const Array& rows, py::ssize
 std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& root,
                                     const Tips& tip, const std::optional<Numbers3>& gravity,
                                     const std::map<std::string, double>& locked_joints,
-                                    std::int64_t threads) {
-  chain_dynamics::UrdfOptions options;
-  options.locked_position = [&](const std::string& joint) {
-    const auto found = locked_joints.find(joint);
-    return found == locked_joints.end() ? std::nullopt : std::optional<double>(found->second);
-  };
-  options.root = root;
-  options.tip = textOf(tip);
-  if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
-  auto made = std::make_unique<FastModel>(
-      chain_dynamics::Model(chain_dynamics::mechanismFromUrdf(urdf.text, options)), threads,
-      urdf.text, root, locked_joints);
-  made->origin =
-      py::make_tuple("from_urdf", urdf.text, root, options.tip, gravity, locked_joints, threads);
+                                    const ParameterDict& motors, std::int64_t threads) {
+  const auto mechanism =
+      mechanismFrom(urdf.text, root, tip, gravity, locked_joints, parametersOf(motors));
+  auto made = std::make_unique<FastModel>(chain_dynamics::Model(mechanism), threads, urdf.text,
+                                          root, locked_joints);
+  made->origin = py::make_tuple("from_urdf", urdf.text, root, textOf(tip), gravity, locked_joints,
+                                motors, threads);
   return made;
 }
 
@@ -125,7 +118,8 @@ std::unique_ptr<FastModel> fromFile(const std::string& path, std::int64_t thread
 }
 
 chain_dynamics::Mechanism mechanismOf(const FastModel& model) {
-  return {model.model().chain, model.model().branches};
+  const auto& inertia = model.model().motor_inertia;
+  return {model.model().chain, model.model().branches, {inertia.begin(), inertia.end()}};
 }
 
 /// The robot with the parameters of an IdentifiedModel of identification/result.py.
@@ -155,6 +149,19 @@ std::unique_ptr<FastModel> identified(const FastModel& engine, const IdentifiedM
   }
   if (const py::object coupling = found.attr("coupling"); !coupling.is_none()) {
     model.coupling = states(coupling.cast<Array>(), "coupling").transpose();
+  }
+  const py::dict places = found.attr("friction_at");  // in the order of the last rows of coupling
+  for (const auto& [place, law] : places) {
+    model.friction_places.push_back(place.cast<std::string>());
+    model.friction.emplace_back(law.cast<chain_dynamics::SmoothCoulomb>());
+  }
+  if (const py::object springs = found.attr("springs"); !springs.is_none()) {
+    const auto rows = springs.cast<Array>();  // stiffness, lever_sin, lever_cos of each joint
+    requireShape("springs", rows, {n, 3});
+    const auto columns = states(rows, "springs");
+    model.stiffness = columns.row(0).transpose();
+    model.rest = Eigen::VectorXd::Zero(n);
+    model.levers = columns.bottomRows(2);
   }
   model.torque_deviation = Eigen::Map<const Eigen::VectorXd>(bands.data(), n);
   model.seen = std::move(ranges);
@@ -213,7 +220,7 @@ std::unique_ptr<FastModel> restored(const py::tuple& origin) {
     return fromUrdf(Description{origin[1].cast<std::string>(), ""}, origin[2].cast<std::string>(),
                     origin[3].cast<std::string>(), origin[4].cast<std::optional<Numbers3>>(),
                     origin[5].cast<std::map<std::string, double>>(),
-                    origin[6].cast<std::int64_t>());
+                    origin[6].cast<ParameterDict>(), origin[7].cast<std::int64_t>());
   }
   if (name == "from_file") {
     return fromFile(origin[1].cast<std::string>(), origin[2].cast<std::int64_t>());
@@ -231,7 +238,7 @@ void bindMaking(py::class_<FastModel>& model) {
   model
       .def_static("from_urdf", &fromUrdf, "urdf"_a, py::kw_only(), "root"_a = "", "tip"_a = "",
                   gravity = py::none(), "locked_joints"_a = std::map<std::string, double>(),
-                  threads = 1,
+                  "motors"_a = dictOf({}), threads = 1,
                   R"(Of a URDF, without the friction that it states.
 
 Parameters
@@ -247,6 +254,8 @@ gravity : sequence of 3 floats, optional
     m/s^2, in the axes of the root link.
 locked_joints : dict, optional
     Positions (rad, m) of joints that are held, by name: of the chain, which lacks them, or beside it.
+motors : dict, optional
+    Parameters `motors` and `motor_names` of a solver: the joints of the model are then the motors.
 threads : int, optional
     Among how many a large batch is shared.
 

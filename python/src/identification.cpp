@@ -88,23 +88,60 @@ using identification::FrictionTerms;
 using identification::LinkPrior;
 using Vector = Eigen::VectorXd;
 
+/// Factors of the velocities of joints, by place and joint.
+using FrictionAt = std::map<std::string, std::map<std::string, double>>;
+
+Eigen::Index placeOf(const std::string& joint, const std::vector<std::string>& joints,
+                     const std::string& what) {
+  const auto place = std::find(joints.begin(), joints.end(), joint);
+  if (place != joints.end()) return place - joints.begin();
+  throw chain_dynamics::ModelError(what, "joint", "one of " + chain_dynamics::joined(joints),
+                                   "'" + joint + "'", "");
+}
+
+/// What is fitted of the springs of joints, by name.
+std::vector<identification::SpringTerms> springTerms(const std::vector<std::string>& joints,
+                                                     const std::map<std::string, std::string>& of) {
+  std::vector<identification::SpringTerms> springs;
+  if (of.empty()) return springs;
+  springs.resize(joints.size(), identification::SpringTerms::kNone);
+  for (const auto& [joint, kind] : of) {
+    if (kind != "linear" && kind != "lever") {
+      throw chain_dynamics::ModelError("spring", "kind of joint " + joint, "linear or lever",
+                                       "'" + kind + "'", "");
+    }
+    springs[static_cast<std::size_t>(placeOf(joint, joints, "spring"))] =
+        kind == "linear" ? identification::SpringTerms::kLinear
+                         : identification::SpringTerms::kLever;
+  }
+  return springs;
+}
+
 std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::string& root,
                                           const Tips& tip,
                                           const std::optional<std::array<double, 3>>& gravity,
                                           const std::map<std::string, double>& locked_joints,
-                                          const std::optional<Array>& coupling) {
-  chain_dynamics::UrdfOptions options;
-  options.locked_position = [&](const std::string& joint) {
-    const auto found = locked_joints.find(joint);
-    return found == locked_joints.end() ? std::nullopt : std::optional<double>(found->second);
-  };
-  options.root = root;
-  options.tip = textOf(tip);
-  if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
-  Eigen::MatrixXd motors;
-  if (coupling) motors = states(*coupling, "coupling").transpose();
-  return std::make_unique<ArmFitter>(chain_dynamics::mechanismFromUrdf(urdf, options),
-                                     identification::LinkFloor{}, motors);
+                                          const std::optional<Array>& coupling,
+                                          const FrictionAt& friction_at,
+                                          const std::map<std::string, std::string>& springs,
+                                          const ParameterDict& motors) {
+  const auto mechanism =
+      mechanismFrom(urdf, root, tip, gravity, locked_joints, parametersOf(motors));
+  const std::vector<std::string> joints = mechanism.coordinates.jointNames();
+  const auto n = static_cast<Eigen::Index>(joints.size());
+  Eigen::MatrixXd laws;
+  if (coupling) laws = states(*coupling, "coupling").transpose();
+  if (!friction_at.empty() && !coupling) laws.setIdentity(n, n);
+  std::vector<std::string> places;
+  for (const auto& [place, velocity] : friction_at) {
+    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(n);
+    for (const auto& [joint, factor] : velocity) row[placeOf(joint, joints, place)] = factor;
+    laws.conservativeResize(laws.rows() + 1, n);
+    laws.bottomRows(1) = row;
+    places.push_back(place);
+  }
+  return std::make_unique<ArmFitter>(mechanism, identification::LinkFloor{}, laws,
+                                     springTerms(joints, springs), places);
 }
 
 /// The known body at the tip in each block, as arguments of set_payload(), or none.
@@ -137,7 +174,8 @@ std::unique_ptr<HeldData> dataOf(const ArmFitter& fitter, std::vector<Block> blo
     samples[b].time = times[b];
   }
   const py::gil_scoped_release release;
-  return std::make_unique<HeldData>(HeldData{std::move(blocks), std::move(before), fitter.data(std::move(samples))});
+  return std::make_unique<HeldData>(
+      HeldData{std::move(blocks), std::move(before), fitter.data(std::move(samples))});
 }
 
 Array torques(const ArmFitter& fitter, const ArmFit& of, const Array& q, const Array& qd,
@@ -193,7 +231,16 @@ void bindFit(py::module_& module) {
           "rotor_inertia", [](const ArmFit& f) { return arrayOf(f.rotor_inertia); },
           "(n,) kg m^2 (prismatic kg).")
       .def_readonly("friction", &ArmFit::friction,
-                    "smooth_coulomb of each joint, by the keys of the model file.")
+                    "smooth_coulomb of each joint and then of each other row of the coupling, by "
+                    "the keys of the model file.")
+      .def_property_readonly(
+          "springs",
+          [](const ArmFit& f) -> std::optional<Array> {
+            if (f.springs.size() == 0) return std::nullopt;
+            return rowsOf(chain_dynamics::OwnedMatrix(f.springs));
+          },
+          "(n, 2): k [N m/rad] and 0 of linear springs, a and b [N m] of levers; None: without "
+          "springs.")
       .def_property_readonly(
           "noise", [](const ArmFit& f) { return arrayOf(f.noise); },
           "(n,) root mean squares of the errors of the samples that it was fitted to.")
@@ -228,18 +275,35 @@ void bindIdentification(py::module_& module) {
       .def_static(
           "from_urdf", &fitterFromUrdf, "urdf"_a, py::kw_only(), "root"_a = "", "tip"_a = "",
           "gravity"_a = py::none(), "locked_joints"_a = std::map<std::string, double>(),
-          "coupling"_a = py::none(),
+          "coupling"_a = py::none(), "friction_at"_a = FrictionAt(),
+          "springs"_a = std::map<std::string, std::string>(), "motors"_a = dictOf({}),
           "Of a URDF's text, whose links are the prior. tip: of several, or of \"*\", a tree.\n"
           "locked_joints: positions of joints beside chain or tree, else 0. coupling: (n, n), "
-          "friction is of motors with velocities\n"
-          "`coupling qd`.")
+          "laws of friction act at\n"
+          "`coupling qd`. friction_at: further places with friction, by name, each with the "
+          "factors "
+          "of the joints' velocities.\n"
+          "springs: linear or lever by joint, to be fitted. motors: as "
+          "FastModel.from_urdf() takes them.")
       .def_property_readonly(
           "coupling",
           [](const ArmFitter& f) -> std::optional<Array> {
             if (f.coupling().size() == 0) return std::nullopt;
             return rowsOf(chain_dynamics::OwnedMatrix(f.coupling().transpose()));
           },
-          "(n, n); None: each joint has a motor of its own.")
+          "(r, n); None: each joint has a law of its own.")
+      .def_property_readonly(
+          "friction_places", [](const ArmFitter& f) { return tupleOf(f.frictionPlaces()); },
+          "Names of the places beside the joints where friction acts: of the last rows of "
+          "coupling.")
+      .def_property_readonly(
+          "springs",
+          [](const ArmFitter& f) {
+            std::vector<int> columns;
+            for (const auto spring : f.springs()) columns.push_back(static_cast<int>(spring));
+            return columns;
+          },
+          "Of each joint 0, 1 of a linear spring that is fitted, 2 of a lever; empty: none.")
       .def_property_readonly(
           "joint_names", [](const ArmFitter& f) { return tupleOf(f.description().jointNames()); },
           "Names of the joints, from root to tip: the order of all arrays.")

@@ -9,6 +9,7 @@
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -125,10 +126,17 @@ void bindNoise(py::module_& module) {
 }
 
 std::unique_ptr<ArmUncertainty> makeUncertainty(const std::vector<StepFriction>& friction,
-                                                const Array& factor) {
+                                                const Array& factor,
+                                                const std::optional<Array>& coupling,
+                                                const std::vector<int>& springs) {
   if (factor.ndim() != 2) throw py::value_error("factor: expected an array (m, K)");
-  return std::make_unique<ArmUncertainty>(
+  auto made = std::make_unique<ArmUncertainty>(
       ArmUncertainty{friction, states(factor, "factor").transpose()});
+  if (coupling) made->coupling = states(*coupling, "coupling").transpose();
+  for (const int columns : springs) {
+    made->springs.push_back(static_cast<inverse_dynamics_identification::SpringTerms>(columns));
+  }
+  return made;
 }
 
 /// Reduces the deviations (K, n) at each of N states: (N, n).
@@ -137,7 +145,8 @@ Array ofDeviations(const ArmUncertainty& arm, const SolverObject& solver, const 
                    const Reduce& reduce) {
   ArmDeviations deviations(solverOf(solver), arm);
   const Array& like_q = std::get<0>(motion);
-  const auto n = static_cast<Eigen::Index>(arm.friction.size());
+  const Eigen::Index n = arm.coupling.size() > 0 ? arm.coupling.cols()
+                                                 : static_cast<Eigen::Index>(arm.friction.size());
   const auto [q, qd, qdd] = columnsOf(motion, like_q.ndim() == 2 ? like_q.shape(0) : 0, n);
   Array result = like(like_q);
   Map out = columns(result);
@@ -170,9 +179,13 @@ void bindArm(py::module_& module) {
   py::class_<ArmUncertainty>(
       module, "ArmUncertainty",
       "What the identified model of an arm may be wrong by: arm_uncertainty.hpp.")
-      .def(py::init(&makeUncertainty), "friction"_a, "factor"_a,
-           "friction: smooth_coulomb of each of n joints, by the keys of the model file; "
-           "factor: (m, K), the covariance of the m unknowns is factor factor'.")
+      .def(py::init(&makeUncertainty), "friction"_a, "factor"_a, "coupling"_a = py::none(),
+           "springs"_a = std::vector<int>(),
+           "friction: smooth_coulomb of each of n joints and of other laws, by the keys of the "
+           "model file; factor: (m, K), the\n"
+           "covariance of the m unknowns is factor factor'. coupling: (r, n) as ArmFitter has it; "
+           "springs: of each joint 0, 1 of a\n"
+           "linear one, 2 of a lever.")
       .def("torques", &armTorques, "solver"_a, "z"_a, "motion"_a,
            R"(Torques by which an arm differs from its model.
 

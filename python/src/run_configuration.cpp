@@ -81,6 +81,10 @@ Examples
       Field{"sign", &Robot::sign, "of a table: 1 or -1 for each joint"},
       Field{"rate", &Robot::rate, "of a table without time: samples per second"},
       Field{"gears", &Robot::gears, "of motors that are recorded: ratios, or rows of a matrix"},
+      Field{
+          "friction_at", &Robot::friction_at,
+          "of a fit: places beside the joints with friction, their velocity by factors of joints"},
+      Field{"fit_springs", &Robot::fit_springs, "of a fit: linear or lever, by joint"},
       Field{"source", &Robot::source, "where description and values come from"})
       .def_property_readonly(
           "files",

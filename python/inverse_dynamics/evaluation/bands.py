@@ -14,14 +14,17 @@ s         |tanh(qd / width)|: a joint that creeps may still have the friction of
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from tempfile import TemporaryFile
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics._core import ArmUncertainty
-from inverse_dynamics.robots.model_errors import model_errors_file, read_model_errors
+from inverse_dynamics.robots.model_errors import (
+    MoreFriction,
+    model_errors_file,
+    read_model_errors,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -57,6 +60,7 @@ class TorqueBand:
     level: Floats  # of offsets from day to day
     share: Floats  # of friction, from day to day
     seen: Floats  # greatest velocity of the data of identification
+    more: MoreFriction = field(default_factory=MoreFriction)
 
     def half_widths(self, solver: Solver, q: Floats, qd: Floats, qdd: Floats) -> Floats:
         """(N, n) at states (N, n). solver: of the model."""
@@ -69,7 +73,7 @@ class TorqueBand:
         extrapolated = 0.5 * fv * np.maximum(np.abs(qd) - self.seen, 0.0)
         variance = (
             self.noise**2
-            + ArmUncertainty(self.friction, self.factor).variances(solver, (q, qd, qdd))
+            + self.more.uncertainty(self.friction, self.factor).variances(solver, (q, qd, qdd))
             + self.level**2
             + (self.share * friction) ** 2
             + extrapolated**2
@@ -108,4 +112,5 @@ def read_band(model: Path | None, solver: Solver) -> tuple[TorqueBand | None, st
     factor, friction = np.array(content["deviations"], dtype=float).T, content["friction"]
     seen = np.abs(solver.seen[1]).max(axis=1)
     numbers = {key: np.array(values) for key, values in content["band"].items()}
-    return TorqueBand(factor, friction, seen=seen, **numbers), "", content["fitted_to"]
+    band = TorqueBand(factor, friction, seen=seen, more=MoreFriction.read(content), **numbers)
+    return band, "", content["fitted_to"]

@@ -45,6 +45,13 @@ class Posture:
     moves: bool = False  # then no held position is right
 
 
+def motors_of(robot: Robot) -> dict[str, Parameter]:
+    """Parameters of a run configuration that make motors the coordinates of the mechanism."""
+    return {
+        key: robot.parameters[key] for key in ("motors", "motor_names") if robot.parameters.get(key)
+    }
+
+
 def locked_joints(robot: Robot) -> dict[str, float]:
     """Positions of `locked_joints.JOINT` among the parameters of a run configuration, by joint."""
     return {

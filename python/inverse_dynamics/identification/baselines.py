@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.evaluation.posture import LOCKED
+from inverse_dynamics.evaluation.posture import LOCKED, motors_of
 from inverse_dynamics.robots.robots import RIGID_BODY, with_changes
 from inverse_dynamics.robots.solvers import open_solver
 
@@ -30,7 +30,8 @@ _STEP_WIDTH = 0.05  # rad/s, of a step that a model without friction is given
 def baselines(robot: Robot, description: str) -> dict[str, Solver]:
     """By name of COLUMNS: the description without friction, and the present model if there is one."""
     posture = {name: at for name, at in robot.parameters.items() if name.startswith(LOCKED)}
-    urdf = replace(robot, model=None, plugin=RIGID_BODY, friction=False, parameters=posture)
+    parameters = {**motors_of(robot), **posture}
+    urdf = replace(robot, model=None, plugin=RIGID_BODY, friction=False, parameters=parameters)
     found = {"urdf": open_solver(with_changes(urdf), description)}
     if robot.plugin != RIGID_BODY or robot.model is not None:
         found["present"] = open_solver(robot, description)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motors that other joints turn too: their velocities are `C qd`, and friction is theirs."""
+"""Where friction acts: at motors that other joints turn too, whose velocities are `C qd`, and beside the joints."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from inverse_dynamics._core import ArmFitOptions
 from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run
 from inverse_dynamics.evaluation.run import RunOptions
 from inverse_dynamics.identification.blocks import blocks_of
-from inverse_dynamics.identification.knowledge import Knowledge, student_t
+from inverse_dynamics.identification.knowledge import Knowledge, own_columns, student_t
 from inverse_dynamics.identification.result import DriveGain, IdentificationError
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.arm import Arm
@@ -204,14 +204,14 @@ def _half_widths(fitter: ArmFitter, fit: ArmFit, currents: ArmData) -> Floats:
     data, prior, scores = fitter.information(fit, currents, _options())
     n = len(fitter.joint_names)
     rigid = fit.parameters.size
-    columns = (len(data) - rigid) // n
+    columns = own_columns(_LAW) + 1
     at = rigid + columns * np.arange(1, n + 1) - 1
     values = np.zeros(len(data))
     values[:rigid] = fit.parameters.ravel()
     none = np.zeros((len(data), 0))
     for share in (1.0, _LOOSENED):
         known = Knowledge(
-            fitter.joint_names, values, fitter.prior, data, share * prior, scores, assumed=none
+            fitter.joint_names, (), values, fitter.prior, data, share * prior, scores, assumed=none
         )
         deviations.append(np.linalg.norm(known.deviations[at], axis=1))
     widths: Floats = student_t(len(scores)) * np.max(deviations, axis=0)

@@ -16,7 +16,13 @@ from inverse_dynamics._core import Solver
 from inverse_dynamics.arguments import checked
 from inverse_dynamics.errors import BagError, SolverError
 from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run, torques_with_gravity
-from inverse_dynamics.evaluation.posture import LOCKED, locked_joints, posture_of, still_joints
+from inverse_dynamics.evaluation.posture import (
+    LOCKED,
+    locked_joints,
+    motors_of,
+    posture_of,
+    still_joints,
+)
 from inverse_dynamics.evaluation.ranges import on_one_turn
 from inverse_dynamics.evaluation.run import ARRAYS, RunOptions, of_recording, overridden
 from inverse_dynamics.identification.baselines import baseline_torques, baselines
@@ -122,6 +128,8 @@ def identify(
     coupling
         Of n joints whose motors others turn too, the n rows of C, one after the other: motors have velocities
         `C qd`, and friction is theirs. By default of the matrix of `gears`, scaled to ones on its diagonal.
+        Friction at further places and springs are fitted as the run configuration states them: `friction_at`,
+        `fit_springs`.
     accept
         Kinds of refusals.REFUSED that are accepted.
     options
@@ -161,8 +169,10 @@ def identify(
         tip=robot.tip,
         gravity=robot.gravity,
         locked_joints=locked_joints(robot),
+        motors=motors_of(robot),
     )
     joints = described.joint_names
+    _check_springs(robot)
     motors, unfitted = coupling_of(coupling, robot.gears, len(joints))
     # Links are the description's, whatever model is compared with.
     links = replace(robot, model=None)
@@ -176,6 +186,9 @@ def identify(
         gravity=robot.gravity,
         locked_joints=locked_joints(robot),
         coupling=motors,
+        friction_at=robot.friction_at,
+        springs=robot.fit_springs,
+        motors=motors_of(robot),
     )
     gains: tuple[DriveGain, ...] = ()
     if known_payloads:
@@ -194,7 +207,8 @@ def identify(
         ]
     still = still_joints(evaluations)
     some = 0 < len(still.parameters) < len(joints)
-    if some and not (len(coupling) or robot.gears):  # which are of all joints
+    stated_of_all = len(coupling) or robot.gears or robot.friction_at or motors_of(robot)
+    if some and not stated_of_all:
         others: dict[str, Any] = {
             "known_payloads": known_payloads,
             "accept": accept,
@@ -279,6 +293,17 @@ def _description(robot: Robot) -> str:
     return read_description(robot.urdf)
 
 
+def _check_springs(robot: Robot) -> None:
+    """A fit has no torque of known springs."""
+    known = sorted({key.split(".")[1] for key in robot.parameters if key.startswith("springs.")})
+    if known:
+        raise IdentificationError(
+            f"robot {robot.name}: parameters: expected no springs, which a fit doesn't know, got some of "
+            f"{listed(known)}; leave them out, and let the fit find them: fit_springs: {{{known[0]}: linear}}, or "
+            f"--spring {known[0]}"
+        )
+
+
 def _check_unloaded(solver: Solver) -> None:
     """What a solver carries isn't in its description, from which the model starts."""
     with suppress(SolverError):  # of one that can't carry any
@@ -343,7 +368,7 @@ def _groups(evaluations: Sequence[Evaluation], asked: int | None) -> list[list[B
 def _effort_limits(moved: Sequence[DescribedJoint], joints: Sequence[str]) -> Floats:
     """(n,) N m (prismatic N); infinite where none is stated. moved: the joints of all links."""
     stated = {joint.name: joint.limits.get("effort", np.inf) for joint in moved}
-    return np.array([stated[joint] for joint in joints])
+    return np.array([stated.get(joint, np.inf) for joint in joints])  # of motors none is stated
 
 
 def _held_out(
@@ -373,7 +398,7 @@ def _held_out(
         some = [block.later(0.0, step) for block in chosen.blocks]
         known = knowledge(fitter, chosen.fit, some, chosen.options)
         factor = factor_of(fitter, chosen.fit, some, known, law=chosen.law)
-        band = band_of(chosen, factor, others, limits)
+        band = band_of(fitter, chosen, factor, others, limits)
         solver = solver_of_model(described.identified(_model(fitter, chosen, others, None)))
         for block in group:
             motion = block.q, block.qd, block.qdd
@@ -406,12 +431,25 @@ def _model(
     return IdentifiedModel(
         parameters=chosen.fit.parameters,
         rotor_inertia=chosen.fit.rotor_inertia,
-        friction=tuple(chosen.fit.friction),
+        friction=tuple(chosen.fit.friction[: len(fitter.joint_names)]),
         drive_gains=drive_gains,
         torque_deviation=chosen.band,
         seen=np.array([np.stack([x.min(0), x.max(0)], axis=1) for x in (q, qd, qdd)]),
         coupling=fitter.coupling,
+        friction_at=dict(
+            zip(fitter.friction_places, chosen.fit.friction[len(fitter.joint_names) :], strict=True)
+        ),
+        springs=_springs(fitter, chosen),
     )
+
+
+def _springs(fitter: ArmFitter, chosen: Chosen) -> Floats | None:
+    """Of an IdentifiedModel."""
+    if chosen.fit.springs is None:
+        return None
+    kinds = np.array(fitter.springs)[:, None]
+    linear = np.where(kinds == 1, chosen.fit.springs[:, :1], 0.0)
+    return np.hstack([linear, np.where(kinds == 2, chosen.fit.springs, 0.0)])
 
 
 def _result(
@@ -476,7 +514,8 @@ def _result(
         prior_decided=prior_decided(known, float(independent.mean() / samples), links),
         factor=factor,
         band=with_levels(
-            band_of(chosen, factor, blocks, _effort_limits(moved, fitter.joint_names)), levels
+            band_of(fitter, chosen, factor, blocks, _effort_limits(moved, fitter.joint_names)),
+            levels,
         ),
         levels=levels,
         sketch=tuple(x for e in evaluations for x in sketch_of(e.log)),

@@ -53,7 +53,11 @@ _OWN_UNITS = {  # of a revolute joint, and of a prismatic one
     "vs": ("rad/s", "m/s"),
     "fm": ("N m", "N"),
     "distance": ("rad", "m"),
+    "stiffness": ("N m/rad", "N/m"),
+    "lever_sin": ("N m", "N"),
+    "lever_cos": ("N m", "N"),
 }
+_SPRINGS: tuple[tuple[str, ...], ...] = ((), ("stiffness",), ("lever_sin", "lever_cos"))
 
 _CLUSTERS = 10
 # Student's t, 97.5 %, by degrees of freedom, from one.
@@ -65,10 +69,21 @@ _KNOWN = 0.5  # share of the information that must be the data's
 
 
 @dataclass(frozen=True)
+class _Own:
+    """An unknown of friction, rotor or spring."""
+
+    place: str  # the joint, or another place with friction
+    key: str  # of _OWN_UNITS
+    logarithm: bool  # whether its step is one of the logarithm
+    value: float
+
+
+@dataclass(frozen=True)
 class Knowledge:
     """Second derivatives of the cost at a fit, and how they vary from block to block. m unknowns."""
 
     joints: tuple[str, ...]
+    own: tuple[_Own, ...]  # behind the parameters of links
     values: Floats  # (m,)
     described: Floats  # (l, 10): the parameters of the prior, of all links
     data: Floats  # (m, m), of samples as if they were independent
@@ -137,21 +152,41 @@ def knowledge(
     each = max(1, round(_CLUSTERS / len(blocks)))
     clusters = [part for block in blocks for part in block.rows(block.counts).parts(each)]
     data, prior, scores = fitter.information(fit, data_of(fitter, clusters), options)
-    values = _values(fit, options.law)
+    own = _own(fitter, fit, options.law)
+    values = _values(fit, own)
     none = np.zeros((len(values), 0))
-    return Knowledge(fitter.joint_names, values, fitter.prior, data, prior, scores, none)
+    return Knowledge(fitter.joint_names, own, values, fitter.prior, data, prior, scores, none)
 
 
-def _values(fit: ArmFit, law: str) -> Floats:
+def own_columns(law: str) -> int:
+    """Unknowns of a joint's rotor and friction."""
+    return _COLUMNS[law]
+
+
+def _own(fitter: ArmFitter, fit: ArmFit, law: str) -> tuple[_Own, ...]:
+    """The unknowns of a fit beside those of links, in the order of ArmInformation [arm_fit.hpp]."""
+    joints = fitter.joint_names
+    found = []
+    for k, (place, friction) in enumerate(
+        zip((*joints, *fitter.friction_places), fit.friction, strict=True)
+    ):
+        for key, logarithm in _OWN[: _COLUMNS[law]]:
+            if k < len(joints) and key == "rotor_inertia":
+                found.append(_Own(place, key, logarithm, float(fit.rotor_inertia[k])))
+            elif k < len(joints) or key not in ("rotor_inertia", "fo"):
+                found.append(_Own(place, key, logarithm, friction.get(key, 0.0)))
+    if fit.springs is not None:
+        for joint, kind, values in zip(joints, fitter.springs, fit.springs, strict=True):
+            keys = _SPRINGS[kind]
+            found += [
+                _Own(joint, key, False, float(x)) for key, x in zip(keys, values, strict=False)
+            ]
+    return tuple(found)
+
+
+def _values(fit: ArmFit, own: Sequence[_Own]) -> Floats:
     """(m,) the unknowns of a fit."""
-    own = [
-        [
-            fit.rotor_inertia[j] if key == "rotor_inertia" else friction.get(key, 0.0)
-            for key, _ in _OWN[: _COLUMNS[law]]
-        ]
-        for j, friction in enumerate(fit.friction)
-    ]
-    values: Floats = np.concatenate([fit.parameters.ravel(), np.array(own).ravel()])
+    values: Floats = np.append(fit.parameters.ravel(), [one.value for one in own])
     return values
 
 
@@ -178,16 +213,15 @@ def assumed(
 ) -> Floats:
     """(m, K): by how much the unknowns change with the torques (N, n) of the blocks."""
     steps = []
-    logarithm = [log for _, log in _OWN[: _COLUMNS[options.law]]]
-    values = _values(fit, options.law)
-    own = values[fit.parameters.size :]
+    own = _own(fitter, fit, options.law)
+    values = _values(fit, own)
     unit = np.append(
-        np.ones(fit.parameters.size), np.where(np.resize(logarithm, own.shape), own, 1)
+        np.ones(fit.parameters.size), [one.value if one.logarithm else 1.0 for one in own]
     )
     for change in changes:
         moved = [replace(b, tau=b.tau + torques) for b, torques in zip(blocks, change, strict=True)]
         again = fitter.fit(data_of(fitter, moved), options, fit)
-        steps.append((_values(again, options.law) - values) / unit)
+        steps.append((_values(again, _own(fitter, again, options.law)) - values) / unit)
     return np.array(steps).T
 
 
@@ -213,7 +247,7 @@ def intervals(known: Knowledge, model: FastModel, units: Sequence[str]) -> tuple
 
     units: of each joint's torque, N m or N.
     """
-    n, rigid = len(known.joints), known.described.size
+    rigid = known.described.size
     deviations = known.deviations
     factor = student_t(len(known.scores))
     found = []
@@ -223,14 +257,19 @@ def intervals(known: Knowledge, model: FastModel, units: Sequence[str]) -> tuple
         half = factor * float(np.linalg.norm(direction @ deviations))
         found.append(Interval(name, UNITS[k % 10], float(direction @ known.values), half, ""))
     half_widths: list[float] = (factor * np.linalg.norm(deviations, axis=1)).tolist()
-    columns = (len(known.values) - rigid) // n
-    for j, joint in enumerate(known.joints):
-        for c, (key, logarithm) in enumerate(_OWN[:columns]):
-            at = rigid + columns * j + c
-            value = float(known.values[at])
-            width = half_widths[at] * (value if logarithm else 1.0)
-            unit = _OWN_UNITS[key][units[j] == "N"]
-            found.append(Interval(f"{joint} {key}", unit, value, width, joint))
+    for at, one in enumerate(known.own, rigid):
+        width = half_widths[at] * (one.value if one.logarithm else 1.0)
+        is_joint = one.place in known.joints
+        slides = is_joint and units[known.joints.index(one.place)] == "N"
+        found.append(
+            Interval(
+                f"{one.place} {one.key}",
+                _OWN_UNITS[one.key][slides],
+                one.value,
+                width,
+                one.place if is_joint else "",
+            )
+        )
     return tuple(found)
 
 

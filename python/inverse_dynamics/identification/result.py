@@ -11,7 +11,7 @@ was fitted to the others, with everything chosen on the others too.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -20,7 +20,7 @@ import numpy as np
 
 from inverse_dynamics._core import FastModel, Solver
 from inverse_dynamics.errors import EvaluationError, RobotError
-from inverse_dynamics.evaluation.posture import locked_joints
+from inverse_dynamics.evaluation.posture import locked_joints, motors_of
 from inverse_dynamics.outputs.plain import json_text
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY
@@ -84,11 +84,18 @@ class IdentifiedModel:
 
     parameters: Floats  # (l, 10), of l links: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz about the origin
     rotor_inertia: Floats  # (n,) kg m^2 (prismatic kg), seen at the joint
-    friction: tuple[dict[str, float], ...]  # values of smooth_coulomb, by the model file's keys
+    friction: tuple[
+        dict[str, float], ...
+    ]  # of joints: values of smooth_coulomb, by the model file's keys
     drive_gains: Floats | None  # (n,) N m/A where efforts are currents
     torque_deviation: Floats  # (n,) N m: half the width of the 95 % band of measured - computed
     seen: Floats  # (3, n, 2): lowest and highest q, qd, qdd of the samples
-    coupling: Floats | None = None  # (n, n): friction is of motors with velocities `coupling qd`
+    # (r, n): laws act at the velocities `coupling qd`: those of joints, then those of friction_at
+    coupling: Floats | None = None
+    friction_at: Mapping[str, dict[str, float]] = field(
+        default_factory=dict
+    )  # laws beside those of joints, by place
+    springs: Floats | None = None  # (n, 3): stiffness, at rest at zero; lever_sin, lever_cos
 
 
 @dataclass(frozen=True)
@@ -294,6 +301,7 @@ def identified_model(found: Identification) -> FastModel:
         tip=robot.tip,
         gravity=robot.gravity,
         locked_joints=locked_joints(robot),
+        motors=motors_of(robot),
     )
     return described.identified(found.model)
 

@@ -18,7 +18,7 @@ from inverse_dynamics.identification.blocks import data_of
 from inverse_dynamics.identification.cross_validation import errors_of
 from inverse_dynamics.identification.result import Level, valid_samples
 from inverse_dynamics.outputs.plain import plain
-from inverse_dynamics.robots.model_errors import LEAST_GAIN, SCHEMA, sha256
+from inverse_dynamics.robots.model_errors import LEAST_GAIN, SCHEMA, MoreFriction, sha256
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -67,8 +67,18 @@ def factor_of(
     return np.hstack([any_factor @ turn[:, kept], known.assumed])
 
 
+def more_of(fitter: ArmFitter, others: Sequence[dict[str, float]]) -> MoreFriction:
+    """What a fit has beside a law of each joint."""
+    coupling = None if fitter.coupling is None else fitter.coupling.tolist()
+    return MoreFriction(tuple(others), coupling, tuple(fitter.springs))
+
+
 def band_of(
-    chosen: Chosen, factor: Floats, blocks: Sequence[Block], limits: Floats | None
+    fitter: ArmFitter,
+    chosen: Chosen,
+    factor: Floats,
+    blocks: Sequence[Block],
+    limits: Floats | None,
 ) -> TorqueBand:
     """The band of a fit to blocks, of whose level on other days nothing is known but what is usual.
 
@@ -76,11 +86,12 @@ def band_of(
     """
     samples = [block.fitted for block in blocks]
     _, qd, _, tau = (np.abs(np.concatenate(v)) for v in zip(*samples, strict=True))
-    friction = chosen.fit.friction
-    none, greatest = np.zeros(len(friction)), np.quantile(tau, _GREATEST, axis=0)
+    n = qd.shape[1]
+    none, greatest = np.zeros(n), np.quantile(tau, _GREATEST, axis=0)
     return TorqueBand(
         factor=factor,
-        friction=friction,
+        friction=chosen.fit.friction[:n],
+        more=more_of(fitter, chosen.fit.friction[n:]),
         noise=chosen.noise,
         level=none if limits is None else usual_level(greatest, limits),
         share=none if limits is None else none + SHARE,
@@ -135,6 +146,7 @@ def uncertainty_text(found: Identification, model_text: str) -> str:
         "schema": SCHEMA,
         "model_sha256": sha256(model_text.encode()),
         "friction": plain(found.model.friction),
+        **found.band.more.written(),
         "deviations": _rows(found.factor.T, _DIGITS),
         "held_out": _held_out(found),
         "band": {

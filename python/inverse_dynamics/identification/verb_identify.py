@@ -104,6 +104,22 @@ def declare(options: Options) -> None:
         default=(),
     )
     options.add(
+        "--friction-at PLACE=JOINT:FACTOR,...",
+        "friction acts at this place, too, besides the joints: the name of the place, and its velocity as factors of "
+        "those of joints, as of the bearing between two bars: elbow=shoulder_joint:-1,drive_joint:1. May be given "
+        "several times",
+        _friction_place,
+        action="append",
+        default=[],
+    )
+    options.add(
+        "--spring JOINT[=lever]",
+        "find the spring of a joint: a linear one, or with =lever one that pulls a lever around, of the torque "
+        "a sin q + b cos q. May be given several times",
+        action="append",
+        default=[],
+    )
+    options.add(
         "--accept KIND",
         "identify a model although this mistake is found; a refusal names its KIND. May be given "
         "several times",
@@ -143,6 +159,23 @@ def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
             f"expected RECORDING=MASS,x,y,z, a recording and what the robot carries in it, got '{text}'"
         )
     return file_name(recording), stated_payload(load)
+
+
+def _friction_place(text: str) -> tuple[str, dict[str, float]]:
+    place, _, velocity = text.partition("=")
+    factors: dict[str, float] = {}
+    for term in velocity.split(","):
+        joint, _, factor = term.rpartition(":")
+        try:
+            factors[joint] = float(factor)
+        except ValueError:
+            joint = ""
+        if not place or not joint:
+            raise argparse.ArgumentTypeError(
+                "expected PLACE=JOINT:FACTOR,JOINT:FACTOR, a name and the velocity of the place by those of joints, "
+                f"got '{text}'"
+            )
+    return place, factors
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -222,4 +255,10 @@ def _robot(arguments: argparse.Namespace) -> Robot:
     robot = chosen_robot(arguments)
     if arguments.robot is None:
         robot = replace(robot, effort="torque", friction=False)
+    springs = (text.partition("=") for text in arguments.spring)
+    robot = replace(
+        robot,
+        friction_at={**robot.friction_at, **dict(arguments.friction_at)},
+        fit_springs={**robot.fit_springs, **{j: kind or "linear" for j, _, kind in springs}},
+    )
     return with_changes(robot, **changes)

@@ -15,6 +15,7 @@ import hashlib
 import json
 import math
 import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,16 +24,54 @@ from inverse_dynamics._core import ArmUncertainty
 from inverse_dynamics.errors import RobotError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
+
+    from inverse_dynamics.arrays import Floats
 
 LEAST_GAIN = 10.0
 """1/s, of estimators of external torques, and of held-out errors in the file: contacts end 0.2 s after a force."""
 
 SCHEMA = 4
 _KEYS = {"schema", "model_sha256", "friction", "deviations", "held_out"}
+_MORE = {"friction_at", "coupling", "springs"}  # optional
 _BAND = {"noise", "level", "share"}
 _NUMBERS = {"fv", "fc", "width"}  # of smooth_coulomb
 _OPTIONAL_NUMBERS = {"shift", "fo", "fl", "fs", "vs", "fm", "distance"}
+
+
+@dataclass(frozen=True)
+class MoreFriction:
+    """What a model has beside a law of each joint: optional keys of the file."""
+
+    others: Sequence[dict[str, float]] = ()  # laws of further places
+    coupling: Sequence[Sequence[float]] | None = (
+        None  # (r, n): laws act at the velocities `coupling qd`
+    )
+    springs: Sequence[int] = ()  # of each joint 0, 1 of a linear spring, 2 of a lever
+
+    @staticmethod
+    def read(content: Mapping[str, Any]) -> MoreFriction:
+        """From the content of a file."""
+        return MoreFriction(
+            content.get("friction_at", ()),
+            content.get("coupling"),
+            [int(x) for x in content.get("springs", ())],
+        )
+
+    def written(self) -> dict[str, Any]:
+        """Keys of a file."""
+        keys = {
+            "friction_at": [*self.others],
+            "coupling": self.coupling,
+            "springs": [*self.springs],
+        }
+        return {key: value for key, value in keys.items() if value}
+
+    def uncertainty(self, friction: Sequence[dict[str, float]], factor: Floats) -> ArmUncertainty:
+        """With the laws of the joints."""
+        coupling = None if self.coupling is None else np.array(self.coupling)
+        return ArmUncertainty([*friction, *self.others], factor, coupling, [*self.springs])
 
 
 def model_errors_file(model: Path) -> Path:
@@ -63,7 +102,7 @@ def read_uncertainty(model: Path) -> tuple[ArmUncertainty | None, str]:
     if content is None:
         return None, why
     factor = np.array(content["deviations"], dtype=float).T
-    return ArmUncertainty(content["friction"], factor), ""
+    return MoreFriction.read(content).uncertainty(content["friction"], factor), ""
 
 
 def _content(file: Path) -> dict[str, Any]:
@@ -77,12 +116,15 @@ def _content(file: Path) -> dict[str, Any]:
         3: _KEYS | {"band"},
         SCHEMA: _KEYS | {"band", "fitted_to"},
     }
-    if not isinstance(content, dict) or schemas.get(content.get("schema")) != content.keys():
+    if not isinstance(content, dict) or schemas.get(content.get("schema")) != (
+        content.keys() - _MORE
+    ):
         keys = ", ".join(sorted(schemas[SCHEMA]))
         raise _error(file, f"schema {SCHEMA} with the keys {keys}", "others")
     laws, held_out = content["friction"], content["held_out"]
     if not _columns(content["deviations"]):
         raise _error(file, "deviations: rows of as many finite numbers each", "others")
+    _check_more(file, content)
     if not (isinstance(laws, list) and laws and all(map(_is_law, laws))):
         raise _error(file, "friction: numbers of each joint", "others")
     if not (
@@ -104,6 +146,16 @@ def _content(file: Path) -> dict[str, Any]:
     if not (isinstance(sketch, list) and all(map(_is_hash, sketch))):
         raise _error(file, "fitted_to: hexadecimal numbers of 16 digits", "others")
     return content
+
+
+def _check_more(file: Path, content: Mapping[str, Any]) -> None:
+    others, springs = content.get("friction_at", []), content.get("springs", [])
+    if not (isinstance(others, list) and all(map(_is_law, others))):
+        raise _error(file, "friction_at: laws of places", "others")
+    if "coupling" in content and not _columns(content["coupling"]):
+        raise _error(file, "coupling: rows of as many finite numbers each", "others")
+    if not (isinstance(springs, list) and all(x in (0, 1, 2) for x in springs)):
+        raise _error(file, "springs: 0, 1 or 2 of each joint", "others")
 
 
 def _is_hash(text: Any) -> bool:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,10 @@ import pytest
 
 from inverse_dynamics import FastModel, Solver, evaluate, identify
 from inverse_dynamics.identification.files import write_identification
+from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.identification.urdf_export import urdf_text
 from inverse_dynamics.recordings.joint_log import JointLog
-from inverse_dynamics.robots.robots import RIGID_BODY
+from inverse_dynamics.robots.robots import RIGID_BODY, load_robot
 
 NOISE = 0.05  # N m
 FRICTION = np.array([1.0, 0.8, 0.6, 0.4])  # N m, of the joints in the order of the description
@@ -128,3 +130,51 @@ def test_an_arm_that_stands_still_is_held(urdf):
     assert held.joints == ("left_shoulder", "waist")
     assert held.held_out["identified"].max() < 1.3 * NOISE
     assert any("right_elbow at 0.3 rad" in note for note in held.notes)
+
+
+MOTORS = {  # the right elbow follows the motor of the shoulder, too
+    "motors": [1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0.5, 1],
+    "motor_names": ["left_shoulder", "waist", "right_shoulder", "wire"],
+}
+ELBOW = np.array([0, 0, 0.5, 1])  # its velocity by those of the motors
+
+
+def driven(seed: int = 0) -> JointLog:
+    """What motors measured: with friction at the elbow, too, and a spring that pulls a lever of the waist."""
+    time, q, qd, qdd = motion(seed)
+    robot = FastModel.from_urdf(description(HEAVIER), tip="*", motors=MOTORS)
+    effort = robot.torques(q, qd, qdd) + FRICTION * np.tanh(qd / 0.1) + 0.2 * qd
+    effort += np.outer(0.7 * np.tanh(qd @ ELBOW / 0.1), ELBOW)
+    effort[:, 1] += 3 * np.sin(q[:, 1]) - 2 * np.cos(q[:, 1])
+    effort += NOISE * np.random.default_rng(seed + 1).standard_normal(q.shape)
+    stamps = np.round(1e9 * (1 + time)).astype(np.int64)
+    return JointLog(tuple(MOTORS["motor_names"]), stamps, stamps, q, qd, effort)
+
+
+def test_motors_friction_at_further_places_and_levers_are_identified(urdf, tmp_path):
+    file = tmp_path / "driven.yaml"
+    file.write_text(
+        f"schema: 1\nname: driven\ndescription: x\nplugin: {RIGID_BODY}\nurdf: {urdf}\ntip: '*'\n"
+        f"friction: false\nparameters: {{motors: {MOTORS['motors']}, motor_names: {MOTORS['motor_names']}}}\n"
+        "friction_at:\n  elbow: {right_shoulder: 0.5, wire: 1}\nfit_springs: {waist: lever}\n"
+    )
+    found = identify(driven(), file)
+    assert found.joints == tuple(MOTORS["motor_names"])
+    assert found.held_out["identified"].max() < 1.3 * NOISE
+    assert found.model.friction_at["elbow"]["fc"] == pytest.approx(0.7, abs=0.1)
+    np.testing.assert_allclose(found.model.springs[1], [0, 3, -2], atol=0.2)
+    intervals = {interval.name: interval for interval in found.intervals}
+    assert intervals["elbow fc"].value == found.model.friction_at["elbow"]["fc"]
+    assert 0 < intervals["waist lever_sin"].half_width < 1
+    files = write_identification(found, tmp_path / "torso.yaml")
+    evaluation = evaluate(driven(seed=5), files.robot)
+    assert max(error.rmse for error in evaluation.errors_of_kept) < 1.5 * NOISE
+    assert np.median(evaluation.band) < 3 * NOISE
+
+
+def test_known_springs_are_refused_by_name(urdf):
+    robot = replace(
+        load_robot(urdf), tip="*", effort="torque", parameters={"springs.waist.stiffness": 3.0}
+    )
+    with pytest.raises(IdentificationError, match=r"got some of waist; .* --spring waist"):
+        identify(recorded(), robot)
