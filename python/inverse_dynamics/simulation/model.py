@@ -90,6 +90,13 @@ class Friction:
         """Friction torques (..., n) in states (..., n), as the actuators must add them."""
         raise NotImplementedError
 
+    def restart(self) -> None:
+        """Forgets the motion so far."""
+
+    def remembered(self, qd: Floats, q: Floats) -> Floats | float:
+        """(n,) what the motion up to this state adds to torques(); called for states in the order of time."""
+        return 0.0
+
     def line(self, qd: Floats, q: Floats) -> tuple[Floats, Floats]:
         """(n,) slope, not negative, and torque at zero velocity of a line.
 

@@ -55,6 +55,7 @@ class ModelFriction(Friction):
         """steepest: (n,) rad/s, where the laws are."""
         self._solver, self.steepest = solver, steepest
         self.viscous = np.zeros_like(steepest)  # a controller has all of the law as feed-forward
+        self._state = solver.friction_state()
 
     @classmethod
     def of(cls, solver: Solver) -> ModelFriction | None:
@@ -70,6 +71,13 @@ class ModelFriction(Friction):
     def torques(self, qd: Floats, q: Floats) -> Floats:
         """(..., n) at velocities and positions (..., n)."""
         return self._solver.friction_vector(qd, q=q)
+
+    def restart(self) -> None:
+        self._state.reset()
+
+    def remembered(self, qd: Floats, q: Floats) -> Floats:
+        self._state.move(q)
+        return self._state.torques(qd)
 
 
 def description_of(robot: Robot) -> str:

@@ -151,6 +151,8 @@ def drive(
     half = int(np.ceil(0.5 / rate / LONGEST_STEP))
     model.opt.timestep = 0.5 / rate / half
     data.qpos[:], data.qvel[:] = robot.S @ q_start + robot.s, robot.S @ qd_start
+    if robot.friction is not None:
+        robot.friction.restart()
     q, qd, qdd, effort, friction = (np.empty((ticks, len(dofs))) for _ in range(5))
     for k in range(ticks):
         effort[k] = command(k, data.qpos[dofs], data.qvel[dofs])
@@ -185,9 +187,10 @@ def _hold_friction(robot: SimulatedRobot, data: mujoco.MjData, effort: Floats) -
     samples are taken.
     """
     if robot.friction is not None:
-        slope, at_rest = robot.friction.line(data.qvel[robot.dofs], data.qpos[robot.dofs])
+        q, qd = data.qpos[robot.dofs], data.qvel[robot.dofs]
+        slope, at_rest = robot.friction.line(qd, q)
         robot.model.dof_damping[robot.dofs] = slope
-        data.qfrc_applied[robot.dofs] = effort - at_rest
+        data.qfrc_applied[robot.dofs] = effort - at_rest - robot.friction.remembered(qd, q)
 
 
 def _desired_motion(

@@ -33,10 +33,12 @@ def identified(tmp_path_factory: pytest.TempPathFactory) -> Robot:
     friction = tuple(
         {**figures, "fl": 0.02, "fs": 1.0, "vs": 0.2, "shift": 0.01} for figures in model.friction
     )
-    found = identification(model=replace(model, friction=friction))
-    return load_robot(
-        write_identification(found, tmp_path_factory.mktemp("arm") / "arm.yaml").robot
-    )
+    return _written(friction, tmp_path_factory.mktemp("arm"))
+
+
+def _written(friction: tuple[dict[str, float], ...], directory: Path) -> Robot:
+    found = identification(model=replace(arm(), friction=friction))
+    return load_robot(write_identification(found, directory / "arm.yaml").robot)
 
 
 def motion_of(robot: Robot, **options: object) -> object:
@@ -55,6 +57,18 @@ def test_effort_is_what_the_model_computes(identified: Robot, payload: Payload |
     friction = solver.friction_vector(motion.qd, q=motion.q)
     np.testing.assert_allclose(motion.friction, friction, atol=300 * ROUNDING)
     assert np.abs(motion.q - motion.q_desired).max() < 5e-3
+
+
+def test_friction_remembers_the_simulated_motion(tmp_path: Path) -> None:
+    remembering = tuple({**figures, "fm": 8.0, "distance": 0.05} for figures in arm().friction)
+    robot = _written(remembering, tmp_path)
+    motion = motion_of(robot, from_model=True)
+    solver = Solver(RIGID_BODY, model=str(robot.model))
+    limit = solver.friction_vector(motion.qd, q=motion.q)
+    remembered = solver.friction_state().along(motion.q, motion.qd)
+    assert np.abs(remembered).max() > 1.0  # N m
+    # the simulated motion may turn round between two samples
+    np.testing.assert_allclose(motion.friction, limit + remembered, atol=0.02)
 
 
 def test_what_a_solver_carries_and_its_gravity_are_simulated() -> None:
