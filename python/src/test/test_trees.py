@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from two_arms import JOINTS, TIPS, URDF, states
 
-from inverse_dynamics import Solver, load_robot
+from inverse_dynamics import FastModel, Solver, load_robot
 from inverse_dynamics.errors import InvalidParameterError, InvalidRobotDescriptionError, SolverError
 from inverse_dynamics.simulation.model import SimulatedRobot
 
@@ -141,3 +141,12 @@ def test_run_configurations_state_several_tips(tmp_path) -> None:
             f"urdf: two_arms.urdf\ntip: {tip}\n"
         )
         assert load_robot(file).solver().tip_names == ("left_tool", "right_tool")
+
+
+def test_limits_of_a_tree_of_a_model_file_are_those_of_its_description(tmp_path) -> None:
+    engine = FastModel.from_urdf(URDF, tip=list(TIPS))
+    file = tmp_path / "two_arms.yaml"
+    file.write_text(engine.file_text(name="two_arms", source="its URDF", validity="a test"))
+    limits = Solver("rigid_body", parameters={"model": f"{file}"}).limits
+    for name in ("lower", "upper", "velocity", "effort"):
+        np.testing.assert_allclose(limits[name], TREE.limits[name])
