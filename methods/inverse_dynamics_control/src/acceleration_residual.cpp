@@ -23,6 +23,7 @@ void AccelerationResidual::meanTorques(const OwnedVector& q0, const OwnedVector&
   qd_ = 0.5 * (qd0 + qd1);
   qdd_ = (qd1 - qd0) / period;
   model().components(q_, qd_, H_, bias);
+  model().moveFriction(q_);
   model().friction(q_, qd_, friction_);
   bias += friction_;
   inertial.noalias() = H_.lazyProduct(qdd_);

@@ -60,7 +60,7 @@ Status ComputedTorque::update(const JointState& state, const Reference& referenc
     acceleration_ = reference.qdd + gains_.Kp.cwiseProduct(positionError(reference.q, state.q)) +
                     gains_.Kd.cwiseProduct(reference.qd - state.qd);
     model().torques(state.q, state.qd, acceleration_, desired);
-    addFriction(state.q, state.qd, reference.qd, desired);
+    addFriction(state.q, state, reference, desired);
     addLostDamping(state.qd, reference.qd, desired);
   });
 }

@@ -72,13 +72,17 @@ Status ControlLaw::check(const ConstVectorRef& reference) const noexcept {
   return reference.allFinite() ? Status::kOk : Status::kReferenceNotFinite;
 }
 
-void ControlLaw::addFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
-                             const ConstVectorRef& qd_reference, VectorRef tau) {
+void ControlLaw::addFriction(const ConstVectorRef& q, const JointState& state,
+                             const Reference& reference, VectorRef tau) {
   if (friction_.source() == FrictionSource::kNone) return;
   const bool measured = friction_.source() == FrictionSource::kMeasuredVelocity;
-  const ConstVectorRef& v = measured ? qd : qd_reference;
+  const OwnedVector& v = measured ? state.qd : reference.qd;
+  model_.moveFriction(measured ? state.q : reference.q);
   model_.friction(q, v, f_);
   friction_.weigh(v, f_);
+  tau += f_;
+  model_.rememberedFriction(f_);
+  friction_.weighRest(v, f_);
   tau += f_;
 }
 

@@ -107,6 +107,7 @@ EstimateStatus ExternalTorqueEstimator::beginAt(const JointState& state, Estimat
   q_ = state.q;
   if (velocity_ == VelocitySource::kMeasured) qd_ = state.qd;
   if (velocity_ == VelocitySource::kPositions) qd_.setZero();
+  model_.forgetFriction();
   begin(q_, qd_);
   time_ = 0.0;
   updates_ = 0;

@@ -22,7 +22,7 @@ Status FeedForward::update(const JointState& state, const Reference& reference,
     const bool measured = at_ == ModelState::kMeasured;
     const auto& q = measured ? state.q : reference.q;
     model().torques(q, measured ? state.qd : reference.qd, reference.qdd, desired);
-    addFriction(q, state.qd, reference.qd, desired);
+    addFriction(q, state, reference, desired);
     desired += effort;
   });
 }

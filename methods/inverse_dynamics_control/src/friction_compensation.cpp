@@ -46,5 +46,11 @@ void FrictionCompensation::weigh(const Eigen::Ref<const Eigen::VectorXd>& v,
   for (Eigen::Index j = 0; j < f.size(); ++j) f[j] *= weight(v[j]);
 }
 
+void FrictionCompensation::weighRest(const Eigen::Ref<const Eigen::VectorXd>& v,
+                                     Eigen::Ref<Eigen::VectorXd> f) const noexcept {
+  const double most = options_.source == FrictionSource::kReferenceVelocity ? options_.scale : 0.0;
+  for (Eigen::Index j = 0; j < f.size(); ++j) f[j] *= std::max(0.0, most - weight(v[j]));
+}
+
 }  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/gravity_compensation.hpp"
 
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -10,7 +11,10 @@ inline namespace v2 {
 GravityCompensation::GravityCompensation(std::shared_ptr<const InverseDynamicsSolver> solver,
                                          const LawOptions& options)
     : ControlLaw(std::move(solver), options, "gravity compensation"),
-      rest_(Eigen::VectorXd::Zero(jointCount())) {}
+      rest_(Eigen::VectorXd::Zero(jointCount())),
+      guide_(jointCount()) {
+  guide_.q.setConstant(std::numeric_limits<double>::quiet_NaN());
+}
 
 Status GravityCompensation::update(const JointState& state, double period, VectorRef tau) noexcept {
   return update(state, rest_, period, tau);
@@ -24,7 +28,8 @@ Status GravityCompensation::update(const JointState& state, const ConstVectorRef
   return output(state, period, tau, [&](VectorRef desired) {
     model().gravity(state.q, desired);
     damp(state.q, state.qd, desired);
-    addFriction(state.q, state.qd, qd_reference, desired);
+    guide_.qd = qd_reference;
+    addFriction(state.q, state, guide_, desired);
   });
 }
 

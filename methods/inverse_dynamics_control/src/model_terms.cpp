@@ -5,6 +5,7 @@
 #include <chain_dynamics/owned.hpp>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <string>
@@ -57,6 +58,9 @@ ModelTerms::ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver,
   H_ = Eigen::MatrixXd::Zero(n, n);
   bias_ = Eigen::VectorXd::Zero(n);
   g_ = Eigen::VectorXd::Zero(n);
+  forth_ = Eigen::VectorXd::Constant(n, kFast);
+  back_ = -forth_;
+  memory_ = inverse_dynamics_solver::frictionState(*solver_);
   const auto of = [&](const Shares& shares, const char* term) {
     return left(shares, law + ": compensated: " + term, jointNames());
   };
@@ -99,6 +103,7 @@ void ModelTerms::friction(const ConstVectorRef& q, const ConstVectorRef& v, Vect
   f.setZero();
   if (friction_.isZero(0) && viscous_.isZero(0)) return;
   solver_->getFrictionVector(q, v, f);
+  memory_.addTo(v, f);
   for (Eigen::Index j = 0; j < f.size(); ++j) {
     const double viscous = viscousOf(V_, j, [&](Eigen::Index i) { return v[i]; });
     if (viscous == 0) {
@@ -109,6 +114,12 @@ void ModelTerms::friction(const ConstVectorRef& q, const ConstVectorRef& v, Vect
       f[j] = friction_[j] * (f[j] - viscous) + viscous_[j] * viscous;
     }
   }
+}
+
+void ModelTerms::rememberedFriction(VectorRef f) const noexcept {
+  f.setZero();
+  for (const OwnedVector* velocity : {&forth_, &back_}) memory_.addTo(*velocity, f);
+  f.array() *= 0.5 * friction_.array();  // steps of opposite signs cancel
 }
 
 double ModelTerms::lostDamping(Eigen::Index j, const ConstVectorRef& qd,

@@ -46,6 +46,7 @@ void MomentumObserver::meanTorques(const OwnedVector& /*q0*/, const OwnedVector&
 
 void MomentumObserver::terms(const OwnedVector& q, const OwnedVector& qd) {
   model().components(q, qd, H_, bias_);
+  model().moveFriction(q);
   model().friction(q, qd, friction_);
   bias_ += friction_;
 }

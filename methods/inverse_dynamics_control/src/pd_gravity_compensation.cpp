@@ -37,7 +37,7 @@ Status PdGravityCompensation::update(const JointState& state, const Reference& r
     model().gravity(state.q, desired);
     desired += gains_.Kp.cwiseProduct(positionError(reference.q, state.q)) +
                gains_.Kd.cwiseProduct(reference.qd - state.qd);
-    addFriction(state.q, state.qd, reference.qd, desired);
+    addFriction(state.q, state, reference, desired);
   });
 }
 

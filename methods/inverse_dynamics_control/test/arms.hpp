@@ -10,10 +10,12 @@
 #include <chain_dynamics/dynamic_components.hpp>
 #include <chain_dynamics/gravity_vector.hpp>
 #include <chain_dynamics/inertia_matrix.hpp>
+#include <chain_dynamics/model.hpp>
 #include <cmath>
 #include <initializer_list>
 #include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <limits>
 #include <memory>
@@ -127,6 +129,44 @@ class ChainSolver : public InverseDynamicsSolver {
 
  private:
   chain_dynamics::Chain chain_;
+};
+
+/// Two bars whose friction preslides, or its limit without memory.
+class PreslidingArm : public ChainSolver, public inverse_dynamics_solver::FrictionMemory {
+ public:
+  static constexpr double kPresliding = 8.0;  // N m
+
+  /// @param stribeck  what friction is greater by at rest [N m].
+  static std::shared_ptr<PreslidingArm> make(bool remembers, double stribeck = 0) {
+    auto solver = std::make_shared<PreslidingArm>(remembers, stribeck);
+    solver->initialize();
+    return solver;
+  }
+  PreslidingArm(bool remembers, double stribeck)
+      : ChainSolver(twoBars()), model_(twoBars()), remembers_(remembers) {
+    chain_dynamics::SmoothCoulomb law;
+    law.fv = 2.0;
+    law.fm = kPresliding;
+    law.width = 0.02;
+    law.distance = 0.01;
+    law.fs = stribeck;
+    law.vs = 0.06;
+    model_.friction = {law, law};
+  }
+
+ protected:
+  void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
+                       VectorRef f) const override {
+    chain_dynamics::frictionVector(model_, q, qd, f);
+  }
+  chain_dynamics::FrictionState frictionStateImpl() const override {
+    return remembers_ ? chain_dynamics::FrictionState(model_) : chain_dynamics::FrictionState();
+  }
+  const InverseDynamicsSolver& torqueSolver() const override { return *this; }
+
+ private:
+  chain_dynamics::Model model_;
+  bool remembers_;
 };
 
 /// Options without any limit: damping 4 N m s/rad in each joint, no friction compensation.

@@ -22,7 +22,7 @@ TEST(RealTime, NoCycleAllocatesLocksOrThrows) {
   if (!kAllocationGuardWorks && !kRealtimeSanitizerWatches) {
     GTEST_SKIP() << "allocations can't be counted in this build";
   }
-  const auto solver = ChainSolver::make(twoBars());
+  const auto solver = PreslidingArm::make(true);
   LawOptions options = unlimited(2);
   options.friction = {FrictionSource::kMeasuredVelocity, 0.1, 0.2, 0.5};
   options.limits.rate = vec({1.0, 1.0});

@@ -65,9 +65,16 @@ class ControlLaw {
 
   /// To be called when the loop begins or goes on after a pause: the first output isn't limited in
   /// its rate, or starts from the effort (n, N m) that acts now.
-  void start() noexcept { output_.start(); }
+  /// What friction remembers of the motion before is forgotten.
+  void start() noexcept {
+    model_.forgetFriction();
+    output_.start();
+  }
   /// @copydoc start()
-  void start(const ConstVectorRef& effort) noexcept { output_.start(effort); }
+  void start(const ConstVectorRef& effort) noexcept {
+    model_.forgetFriction();
+    output_.start(effort);
+  }
 
   /// The same where a law takes over from another one.
   ///
@@ -118,9 +125,10 @@ class ControlLaw {
   /// kWrongSize, kReferenceNotFinite or kOk, of a vector of a reference.
   Status check(const ConstVectorRef& reference) const noexcept;
 
-  /// Adds the blended friction at the velocity that the options choose, under the load at q.
-  void addFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
-                   const ConstVectorRef& qd_reference, VectorRef tau);
+  /// Adds the blended friction of the motion that the options choose, under the load at q. A reference
+  /// without finite positions leaves no memory.
+  void addFriction(const ConstVectorRef& q, const JointState& state, const Reference& reference,
+                   VectorRef tau);
 
   /// Adds `d (qd_reference - qd)` where friction of the reference's velocity is compensated: damping that
   /// the robot takes by compensating more of viscous friction than of the rest, and without which the

@@ -15,6 +15,11 @@
 ///     f_compensated = scale w(|v|) f(v),   w(s) = 3 x^2 - 2 x^3,   x = (s - dead_band) / blend
 ///
 /// with x cut to [0, 1]: nothing at rest, all of it from dead_band + blend on, and smooth between.
+///
+/// Friction with memory [inverse_dynamics_solver/friction_memory.hpp] is that after the motion so far. What
+/// a joint remembers when it stops it keeps, so with the velocity of a reference this part acts at rest, too:
+/// it is constant while the reference stands. With the measured velocity it doesn't: an arm that is let go
+/// must not creep.
 #pragma once
 
 #include <Eigen/Core>
@@ -65,6 +70,11 @@ class FrictionCompensation {
   /// Real time: no allocation, lock, exception or system call.
   void weigh(const Eigen::Ref<const Eigen::VectorXd>& v,
              Eigen::Ref<Eigen::VectorXd> f) const noexcept;
+
+  /// Multiplies what each joint remembers at rest by `scale (1 - w(|v|))`, with the velocity of a reference,
+  /// and by zero with the measured one; as weigh().
+  void weighRest(const Eigen::Ref<const Eigen::VectorXd>& v,
+                 Eigen::Ref<Eigen::VectorXd> f) const noexcept;
 
  private:
   FrictionOptions options_;

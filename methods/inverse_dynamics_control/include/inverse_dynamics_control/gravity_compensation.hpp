@@ -41,6 +41,7 @@ class GravityCompensation : public ControlLaw {
 
  private:
   OwnedVector rest_;  // zero
+  Reference guide_;   // its velocity; no position
 };
 
 }  // namespace v2

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/friction_state.hpp>
 #include <chain_dynamics/owned.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
@@ -67,8 +68,20 @@ class ModelTerms {
   /// The part of `g(q)` that the robot doesn't compensate, n.
   void gravity(const ConstVectorRef& q, VectorRef g) const;
 
-  /// The part of `f(q, v)` that the robot doesn't compensate, n.
+  /// Goes on to the position q, n, of the motion that friction remembers; one that isn't finite is left
+  /// out.
+  void moveFriction(const ConstVectorRef& q) noexcept { memory_.move(q); }
+
+  /// Forgets that motion.
+  void forgetFriction() noexcept { memory_.reset(); }
+
+  /// The part of `f(q, v)`, after the motion so far, that the robot doesn't compensate, n.
   void friction(const ConstVectorRef& q, const ConstVectorRef& v, VectorRef f) const;
+
+  /// What friction remembers at rest, without what the robot compensates, n: `C' fm z`
+  /// [chain_dynamics/friction_state.hpp], constant while no joint of the motion moves, and zero before it
+  /// begins. The part fs isn't in it: an arm that still moves doesn't have it, and would be pushed on.
+  void rememberedFriction(VectorRef f) const noexcept;
 
   /// Of joint j: the torque of damping to the reference that the arm lacks beside the rest of its friction,
   /// as the robot compensates more of the viscous part than of the others; N m (prismatic N).
@@ -79,8 +92,10 @@ class ModelTerms {
   std::shared_ptr<const InverseDynamicsSolver> solver_;
   chain_dynamics::OwnedMatrix H_;
   OwnedVector bias_, g_;
+  OwnedVector forth_, back_;  // so fast that fs is zero; of opposite signs
   // n each: shares that the robot doesn't compensate; friction but for the viscous part
   OwnedVector gravity_, coriolis_, friction_, viscous_;
+  chain_dynamics::FrictionState memory_;
   // n x n: torques of viscous friction by velocities; joints that share motors have them of each other
   chain_dynamics::OwnedMatrix V_;
 };
