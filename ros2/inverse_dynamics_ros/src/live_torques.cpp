@@ -7,6 +7,7 @@
 #include <inverse_dynamics_evaluation/effort.hpp>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
 #include <inverse_dynamics_evaluation/online_derivative.hpp>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <limits>
 #include <memory>
@@ -27,7 +28,8 @@ LiveTorques::LiveTorques(
                        inverse_dynamics_evaluation::kTorqueWithoutGravity),
       drive_gains_(Eigen::VectorXd::Ones(solver_->jointCount())),
       matching_(std::move(options.joints)),
-      accelerations_(solver_->jointCount(), options.cutoff, options.longest_gap) {
+      accelerations_(solver_->jointCount(), options.cutoff, options.longest_gap),
+      friction_(inverse_dynamics_solver::frictionState(*solver_)) {
   for (Eigen::VectorXd* vector : {&q_, &qd_, &measured_, &gravity_, &computed_, &residual_}) {
     vector->setZero(solver_->jointCount());
   }
@@ -52,8 +54,11 @@ LiveTorques::Outcome LiveTorques::process(const sensor_msgs::msg::JointState& me
   if (!q_.allFinite() || !qd_.allFinite()) return Outcome::kNotFinite;
   step_ = accelerations_.update(stamp, qd_);
   if (step_ == OnlineDerivative::Step::kRepeated) return Outcome::kRepeated;
+  if (step_ != OnlineDerivative::Step::kContinued) friction_.reset();
+  friction_.move(q_);
   if (!accelerations_.settled()) return Outcome::kSettling;
   solver_->getTorques(q_, qd_, accelerations_.derivative(), computed_);
+  friction_.addTo(qd_, computed_);
   if (without_gravity_) {
     solver_->getGravityVector(q_, gravity_);
     computed_ -= gravity_;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chain_dynamics/friction_state.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <inverse_dynamics_evaluation/effort.hpp>
@@ -52,7 +53,8 @@ class LiveTorques {
 
   const inverse_dynamics_solver::InverseDynamicsSolver& solver() const { return *solver_; }
 
-  /// n; N m (prismatic N), in the order of the chain. Without gravity where the efforts are.
+  /// n; N m (prismatic N), in the order of the chain, with what friction remembers. Without gravity where
+  /// the efforts are.
   const Eigen::VectorXd& computed() const { return computed_; }
 
   /// n; measured - computed torques; N m (prismatic N).
@@ -89,6 +91,7 @@ class LiveTorques {
   inverse_dynamics_evaluation::OnlineDerivative accelerations_;
   inverse_dynamics_evaluation::OnlineDerivative::Step step_ =
       inverse_dynamics_evaluation::OnlineDerivative::Step::kStarted;
+  chain_dynamics::FrictionState friction_;  // of the motion since the filter last restarted
   Eigen::VectorXd q_, qd_, measured_, gravity_, computed_, residual_;
   bool has_residual_ = false;
 };

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chain_dynamics/model.hpp>
 #include <cstdint>
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <limits>
+#include <memory>
 
 #include "two_joint_solver.hpp"
 
@@ -39,6 +42,26 @@ LiveTorques make(const std::string& effort = "torque", const std::vector<double>
   return {solver, {{"a", "b"}, meaning, kCutoff, 0.5}};
 }
 
+/// The solver of the head with presliding friction of 1.5 N m in joint a; its limit without memory is
+/// left out.
+class Presliding : public TwoJointSolver, public inverse_dynamics_solver::FrictionMemory {
+ protected:
+  const inverse_dynamics_solver::InverseDynamicsSolver& torqueSolver() const override {
+    return *this;
+  }
+  chain_dynamics::FrictionState frictionStateImpl() const override {
+    const auto link =
+        chain_dynamics::LinkParameters::fromCenterOfMass(1, {0, 0, 0}, Eigen::Matrix3d::Identity());
+    chain_dynamics::Model model(
+        chain_dynamics::Chain("two joints", {{"a"}, {"b"}}, {link, link}, {0, 0, 0}));
+    chain_dynamics::SmoothCoulomb law;
+    law.fm = 1.5;
+    law.width = law.distance = 1e-3;
+    model.friction = {law, chain_dynamics::ViscousCoulombOffset()};
+    return chain_dynamics::FrictionState(model);
+  }
+};
+
 // Runs until the filter has settled; the stamp after the last one.
 std::int64_t settle(LiveTorques& live, std::int64_t begin = 0) {
   std::int64_t stamp = begin;
@@ -64,6 +87,27 @@ TEST(LiveTorques, AreNotThereBeforeTheFilterHasSettled) {
   EXPECT_EQ(live.process(stateAt(0), 0), Outcome::kSettling);
   EXPECT_EQ(live.process(stateAt(50 * kMillisecond), 50 * kMillisecond), Outcome::kSettling);
   EXPECT_EQ(live.process(stateAt(54 * kMillisecond), 54 * kMillisecond), Outcome::kComputed);
+}
+
+TEST(LiveTorques, RememberTheMotionUntilTheFilterRestarts) {
+  const auto solver = std::make_shared<Presliding>();
+  solver->initialize();
+  const auto meaning = inverse_dynamics_evaluation::statedEffort(effortsOfTwoJoints("torque", {}));
+  LiveTorques live(solver, {{"a", "b"}, meaning, kCutoff, 0.5}), without = make();
+  JointState state;
+  const auto remembered = [&](std::int64_t begin) {
+    std::int64_t stamp = begin;
+    for (int k = 0; k < 400; ++k, stamp += kMillisecond) {
+      live.process(state, stamp);
+      without.process(state, stamp);
+    }
+    return Eigen::VectorXd(live.computed() - without.computed());
+  };
+  const std::int64_t stamp = settle(live);
+  state = stateAt(stamp);
+  state.velocity = {0, 0, 0};
+  EXPECT_LT((remembered(stamp) - Eigen::Vector2d(1.5, 0)).norm(), 1e-6);
+  EXPECT_LT(remembered(100 * stamp).norm(), 1e-6);
 }
 
 TEST(LiveTorques, CompareCurrentsByDriveGainsAndEffortsWithoutGravityWithoutIt) {
