@@ -48,14 +48,17 @@ Array unknown(const State& of) {
 }  // namespace
 
 void bindFrictionState(py::module_& module, py::class_<Solver>& solver) {
-  py::class_<State>(module, "FrictionState",
-                    "What friction remembers of a motion: friction_state.hpp. Threads: each its own.")
+  py::class_<State>(
+      module, "FrictionState",
+      "What friction remembers of a motion: friction_state.hpp. Threads: each its own.")
       .def_property_readonly(
           "remembers", [](const State& of) { return of.state.remembers(); },
           "Whether friction remembers anything; else all torques here are zero.")
-      .def("reset", [](State& of) { of.state.reset(); }, "Forgets the motion so far.")
-      .def("move", [](State& of, const Array& q) { of.state.move(vectorOf(of, q, "q")); }, "q"_a,
-           "Goes on to the position q (n,) [rad; prismatic m], in the order of time.")
+      .def(
+          "reset", [](State& of) { of.state.reset(); }, "Forgets the motion so far.")
+      .def(
+          "move", [](State& of, const Array& q) { of.state.move(vectorOf(of, q, "q")); }, "q"_a,
+          "Goes on to the position q (n,) [rad; prismatic m], in the order of time.")
       .def("torques", &torques, "qd"_a,
            "(n,) N m (prismatic N) to be added to friction_vector() or torques() at qd (n,).")
       .def("along", &along, "q"_a, "qd"_a,

@@ -71,7 +71,8 @@ void FrictionState::add(const At& qd, const Add& add) const noexcept {
       if (c != 0) v += c * qd(j);
     }
     const double step = std::tanh((v + law.shift) / law.width);
-    const double height = law.fm + (law.fs == 0 ? 0 : law.fs * std::exp(-v * v / (law.vs * law.vs)));
+    const double height =
+        law.fm + (law.fs == 0 ? 0 : law.fs * std::exp(-v * v / (law.vs * law.vs)));
     const double f = height * (memory.z + (memory.unknown - 1) * step);
     for (Eigen::Index j = 0; j < n; ++j) {
       const double c = coefficient(l, j);

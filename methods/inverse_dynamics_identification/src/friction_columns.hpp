@@ -14,12 +14,9 @@ inline namespace v2 {
 
 /// Coefficients that a law is linear in, and their columns.
 constexpr std::pair<Eigen::Index, double StepFriction::*> kLinear[] = {
-    {own_column::kVelocity, &StepFriction::fv},
-    {own_column::kOne, &StepFriction::fo},
-    {own_column::kStep, &StepFriction::fc},
-    {own_column::kLoad, &StepFriction::fl},
-    {own_column::kStribeck, &StepFriction::fs},
-    {own_column::kMemory, &StepFriction::fm}};
+    {own_column::kVelocity, &StepFriction::fv}, {own_column::kOne, &StepFriction::fo},
+    {own_column::kStep, &StepFriction::fc},     {own_column::kLoad, &StepFriction::fl},
+    {own_column::kStribeck, &StepFriction::fs}, {own_column::kMemory, &StepFriction::fm}};
 
 /// z and u [chain_dynamics/friction_state.hpp], and their derivatives by log(distance).
 template <typename Values>
@@ -37,8 +34,8 @@ Values smoothStep(const Values& x) {
 /// column(c): where column c goes, of the first `count` ones.
 template <typename Values, typename Column>
 void frictionColumns(const StepFriction& law, const Values& qd, const Values& qdd,
-                     const Values& load, const PreslidingValues<Values>& memory,
-                     Eigen::Index count, const Column& column) {
+                     const Values& load, const PreslidingValues<Values>& memory, Eigen::Index count,
+                     const Column& column) {
   using std::exp;
   const Values x = (qd + law.shift) / law.width;
   const Values step = smoothStep(x);

@@ -32,8 +32,7 @@ void ownColumnsAt(const StepFriction& law, double qd, double qdd, double load,
   frictionColumns(law, qd, qdd, load,
                   PreslidingValues<double>{memory.z.value, memory.unknown.value,
                                            memory.z.derivative[0], memory.unknown.derivative[0]},
-                  row.size(),
-                  [&](Eigen::Index c) -> double& { return row[c]; });
+                  row.size(), [&](Eigen::Index c) -> double& { return row[c]; });
 }
 
 }  // namespace v2

@@ -73,9 +73,11 @@ class ModelFriction(Friction):
         return self._solver.friction_vector(qd, q=q)
 
     def restart(self) -> None:
+        """Forgets the motion so far."""
         self._state.reset()
 
     def remembered(self, qd: Floats, q: Floats) -> Floats:
+        """(n,) what the motion up to this state adds."""
         self._state.move(q)
         return self._state.torques(qd)
 

@@ -468,9 +468,7 @@ def test_friction_follows_the_temperature(identified_on, tmp_path):
 
 def blocks_of_arrays(q, qd, qdd, tau):
     time, all_of = np.arange(len(q)) * 0.01, np.full(len(q), True)
-    return Block(
-        "arrays", time, time, all_of, q, qd, qdd, tau, all_of, ~all_of, q[:0]
-    ).parts(4)
+    return Block("arrays", time, time, all_of, q, qd, qdd, tau, all_of, ~all_of, q[:0]).parts(4)
 
 
 @pytest.mark.parametrize("seed", [64, 116, 118])
