@@ -45,8 +45,8 @@ _DELAY_STEP = 0.008  # s, at least
 _MOST_DELAY_STEPS = 8
 _VERTICES = 2
 _LEAST_DELAY = 1e-4  # s; a shorter one counts as none
-# What delays are looked for with: friction that lags behind a reversal looks like a delay to a law without memory, and a
-# law with memory may take some of its own lag back. The lesser one of both is a delay.
+# What delays are looked for with: friction that lags behind a reversal looks like a delay to a law without memory, and
+# a law with memory may take some of its own lag back. The lesser one of both is a delay.
 _DELAY_LAWS = ("load", "memory")
 
 
