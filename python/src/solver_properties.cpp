@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/load_friction.hpp>
 #include <inverse_dynamics_solver/motor_currents.hpp>
 #include <inverse_dynamics_solver/torque_deviation.hpp>
@@ -112,10 +113,15 @@ py::dict stated(const chain_dynamics::JointLimits& limits, bool zero) {
   return found;
 }
 
-/// Whether the solver's robot is a tree of the description: it has several tips, or joints that mimic others.
+/// Whether the solver's robot is a tree of the description: it has several tips, motors, or joints that mimic
+/// others.
 bool isTree(const Solver& solver, const chain_dynamics::RobotDescription& robot) {
   const std::vector<std::string>& tips = solver.get().tipNames();
-  if (tips.size() > 1) return true;
+  const auto& parameters = solver.origin().parameters;
+  const auto motors = parameters.lower_bound("motors");
+  if (tips.size() > 1 || (motors != parameters.end() && motors->first.rfind("motors", 0) == 0)) {
+    return true;
+  }
   std::size_t link = robot.linkIndex(tips.front());
   while (link != robot.kNone && robot.links[link].parent_joint != robot.kNone) {
     const auto& joint = robot.joints[robot.links[link].parent_joint];
@@ -126,18 +132,10 @@ bool isTree(const Solver& solver, const chain_dynamics::RobotDescription& robot)
 }
 
 /// The coordinates of a tree, which joints that mimic them restrict.
-std::vector<chain_dynamics::Joint> treeJoints(const Solver& solver,
-                                              const chain_dynamics::RobotDescription& robot) {
-  chain_dynamics::UrdfOptions options;
-  options.root = textParameter(solver, "root");
-  options.allow_massless = true;
-  const auto locked = [&solver](const std::string& joint) -> std::optional<double> {
-    const auto found = solver.origin().parameters.find("locked_joints." + joint);
-    if (found == solver.origin().parameters.end()) return {};
-    return std::get<double>(found->second);
-  };
-  options.locked_position = locked;
-  return mechanismFromRobot(robot, options, solver.get().tipNames()).coordinates.joints();
+std::vector<chain_dynamics::Joint> treeJoints(const Solver& solver) {
+  const auto& origin = solver.origin();
+  const auto configuration = ids::readConfiguration(origin.parameters, "", origin.urdf);
+  return mechanismFromDescription(configuration).coordinates.joints();
 }
 
 /// (n,) each, by name; infinite where none is stated.
@@ -147,7 +145,7 @@ ParameterDict limitsOf(const Solver& solver) {
   if (!solver.origin().urdf.empty()) {
     const auto robot = chain_dynamics::robotFromUrdf(solver.origin().urdf);
     if (isTree(solver, robot)) {
-      for (const auto& joint : treeJoints(solver, robot)) joints.append(stated(joint.limits, true));
+      for (const auto& joint : treeJoints(solver)) joints.append(stated(joint.limits, true));
     } else {
       const py::object chain = describedBy(solver).attr("chain")(tupleOf(solver.joints()),
                                                                  textParameter(solver, "root"));

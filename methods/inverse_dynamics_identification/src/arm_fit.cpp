@@ -496,7 +496,13 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const ArmData& data,
                      std::to_string(fit.noise.size()), "take a fit to samples");
   }
   const OwnRows rows = rowsOf(options.terms, fit.drive_gains.size() > 0);
-  const Fit linear = linearPart(fit, rows);
+  Fit linear = linearPart(fit, rows);
+  for (Index j = 0; j < joints() && rows.lawColumns() > own_column::kLoad; ++j) {
+    for (const OwnRows::Place& place : rows.of(j)) {  // within its prior, where there is no load
+      if (!isCoupled(coupling_, place.law)) continue;
+      linear.own(place.first + own_column::kLoad, j) = options.friction.load;
+    }
+  }
   RegressorGram all = fast_.emptyGram(rows.columns());
   all.share(rows.unknowns());
   VectorXd x(all.unknowns());

@@ -354,9 +354,10 @@ TEST_P(SolverConformance, TorqueDerivativesIncludeFriction) {
 }
 
 TEST_P(SolverConformance, FrictionRemembersWithinItsBand) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(FrictionMemory, memory);
   chain_dynamics::FrictionState state = memory->frictionState();
-  const Eigen::Index n = solver_->jointCount();
+  const Eigen::Index n = s.jointCount();
   Eigen::VectorXd most = Eigen::VectorXd::Zero(n), f(n);
   state.addUnknown(most);
   EXPECT_EQ(state.remembers(), !most.isZero(0));
