@@ -133,6 +133,7 @@ void checkCount(const Model& model, const std::string& what, std::size_t count) 
 void checkFrictionLaws(const Model& model) {
   const std::string where = "model " + model.name;
   const std::size_t n = model.chain.joints().size(), places = model.friction_places.size();
+  if (model.friction.empty()) return;
   if (places > 0 && (model.friction.size() != n + places || model.coupling.size() == 0 ||
                      lawCount(model) > kMostFrictionLaws)) {
     throw ModelError(where, "friction",
@@ -143,7 +144,7 @@ void checkFrictionLaws(const Model& model) {
                          std::to_string(model.coupling.rows()) + " rows",
                      "");
   }
-  if (places == 0 && !model.friction.empty() && model.friction.size() != n) {
+  if (places == 0 && model.friction.size() != n) {
     throw ModelError(where, "friction", "no law, or one per joint (" + std::to_string(n) + ")",
                      std::to_string(model.friction.size()), "name further laws in friction_places");
   }

@@ -131,6 +131,8 @@ TEST(CoupledMotors, AreRefusedWhereLawsDoNotFitTheirPlaces) {
   refuses("coupling of elbow: expected a number other than zero");
   model.coupling = {};
   refuses("a law and a row of coupling for each of 2 joints and 1 places");
+  model.friction.clear();  // of a solver without friction
+  checkModel(model);
 }
 
 TEST(CoupledMotors, HaveNoLoadFrictionWhereTheyMoveOtherJoints) {

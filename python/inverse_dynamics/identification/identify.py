@@ -299,8 +299,7 @@ def _check_springs(robot: Robot) -> None:
     if known:
         raise IdentificationError(
             f"robot {robot.name}: parameters: expected no springs, which a fit doesn't know, got some of "
-            f"{listed(known)}; leave them out, and let the fit find them: fit_springs: {{{known[0]}: linear}}, or "
-            f"--spring {known[0]}"
+            f"{listed(known)}; leave them out, and let the fit find them: fit_springs: {{{known[0]}: linear}}"
         )
 
 

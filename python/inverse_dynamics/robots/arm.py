@@ -73,7 +73,9 @@ class Arm:
         robot = self.robot
         if robot.model is None or robot.urdf is None or robot.plugin != RIGID_BODY:
             return self.solver
-        return self.solver_with(model=None, friction=False)
+        described = self.solver_with(model=None, friction=False)
+        # those of a model of motors aren't the joints of the description
+        return described if described.joint_names == self.solver.joint_names else self.solver
 
     def solver_with(self, **changes: Any) -> Solver:
         """Another solver, of the same arm with other entries of its run configuration. Raises SolverError."""

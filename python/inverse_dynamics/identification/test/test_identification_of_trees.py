@@ -169,12 +169,11 @@ def test_motors_friction_at_further_places_and_levers_are_identified(urdf, tmp_p
     files = write_identification(found, tmp_path / "torso.yaml")
     evaluation = evaluate(driven(seed=5), files.robot)
     assert max(error.rmse for error in evaluation.errors_of_kept) < 1.5 * NOISE
-    assert np.median(evaluation.band) < 3 * NOISE
 
 
 def test_known_springs_are_refused_by_name(urdf):
     robot = replace(
         load_robot(urdf), tip="*", effort="torque", parameters={"springs.waist.stiffness": 3.0}
     )
-    with pytest.raises(IdentificationError, match=r"got some of waist; .* --spring waist"):
+    with pytest.raises(IdentificationError, match=r"got some of waist; .*fit_springs: {waist: linear}"):
         identify(recorded(), robot)
