@@ -293,8 +293,9 @@ JointEntry readJoint(const LocatedValue& value, const Conventions& conventions,
     entry.is_motor = motor->truth();
   }
   const bool placed = conventions.geometry == Geometry::kPlacements;
-  map.expect({"name", "type"});
-  if (!entry.is_motor) map.expect({placed ? "placement" : "dh"});
+  std::vector<std::string> keys = {"name", "type"};
+  if (!entry.is_motor) keys.emplace_back(placed ? "placement" : "dh");
+  map.expect(keys);
   map.required("name");
   entry.joint.type = std::vector<JointType>{
       JointType::kRevolute, JointType::kContinuous,
