@@ -262,7 +262,9 @@ TEST(ModelError, PartsMustFit) {
 
   Model model = pendulum;
   model.friction.resize(2);
-  EXPECT_EQ(error(model), "model pendulum: friction: expected no law, or one per joint (1), got 2");
+  EXPECT_EQ(error(model),
+            "model pendulum: friction: expected no law, or one per joint (1), got 2; name further "
+            "laws in friction_places");
   model.friction = {ViscousCoulombOffset{kNaN, 0, 0}};
   EXPECT_THAT(error(model),
               HasSubstr("friction of joint pivot: viscous_coulomb_offset: fv: expected a finite"));
@@ -281,7 +283,8 @@ TEST(ModelError, PartsMustFit) {
 
   model = pendulum;
   model.seen.resize(2);
-  EXPECT_THAT(error(model), HasSubstr("seen ranges: expected none, or one per joint (1), got 2"));
+  EXPECT_THAT(error(model), HasSubstr("seen ranges: expected none, or one per joint (1), got 2; "
+                                      "name further laws in friction_places"));
   model.seen = {{{1, 0}, {0, 1}, {0, 1}}};
   EXPECT_THAT(error(model), HasSubstr("seen range of joint pivot: expected finite numbers"));
 
