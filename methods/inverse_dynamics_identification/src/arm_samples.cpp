@@ -12,6 +12,7 @@
 #include <chain_dynamics/regressor_gram.hpp>
 #include <chain_dynamics/states.hpp>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -305,7 +306,10 @@ Model ArmFitter::model(const ArmFit& fit) const {
 void ArmFitter::torques(const ArmFit& fit, ConstStates q, ConstStates qd, ConstStates qdd,
                         States tau, ConstStates before) const {
   const Model found = model(fit);
-  FastModel(found, fast_).torquesBatch(q, qd, qdd, tau);
+  const auto fast = springs_.empty()
+                        ? std::make_unique<const FastModel>(found, fast_)
+                        : std::make_unique<const FastModel>(found);  // of other kernels
+  fast->torquesBatch(q, qd, qdd, tau);
   FrictionState friction(found);
   friction.moveAlong(before);
   friction.addAlong(q, qd, tau);
