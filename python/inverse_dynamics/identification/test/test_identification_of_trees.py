@@ -175,5 +175,7 @@ def test_known_springs_are_refused_by_name(urdf):
     robot = replace(
         load_robot(urdf), tip="*", effort="torque", parameters={"springs.waist.stiffness": 3.0}
     )
-    with pytest.raises(IdentificationError, match=r"got some of waist; .*fit_springs: {waist: linear}"):
+    with pytest.raises(
+        IdentificationError, match=r"got some of waist; .*fit_springs: {waist: linear}"
+    ):
         identify(recorded(), robot)
