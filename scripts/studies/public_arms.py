@@ -153,6 +153,8 @@ def master_arm(clone: Path, out: Path) -> Arm:
                 "rate": 200,
                 "gears": MASTER_GEARS.ravel().tolist(),
             },
+            friction_at={"elbow": {"elbow_joint": 1}, "platform": {"platform_joint": 1}},
+            fit_springs={"platform_joint": "linear", "pitch_joint": "lever"},
         ),
         {x: recorded / f"{x}_results.csv" for x in ("one", "two")},
         # Velocities of the two fast joints at the wrist aren't the slopes of positions; masses are guesses, and
