@@ -89,7 +89,7 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     noise = fits[simplest].noise
     usual = _strengths(parts, simplest, fits[simplest], noise)
     strength = usual[_simplest(usual, noise, parts.delay)[0]].prior_strength
-    laws = []
+    laws: list[_Alternative] = []
     for law in LAWS:
         fits[law] = parts.fit(law, strength, fits[laws[-1].law if laws else simplest])
         laws.append(parts.left_out(law, strength, [fits[law]] * len(parts.blocks)))

@@ -118,17 +118,21 @@ def _friction(found: Identification) -> ReportTable:
         title="Friction, rotor inertia and 95 % band of each joint",
         headings=("joint", *units, "rotor inertia [kg m²]", "band [N m]"),
         rows=[
-            (
-                joint,
-                *(law.get(key, math.nan) for key in keys),
-                float(found.model.rotor_inertia[j]),
-                float(found.model.torque_deviation[j]),
-            )
-            for j, (joint, law) in enumerate(zip(found.joints, found.model.friction, strict=True))
-        ]
-        + [
-            (place, *(law.get(key, math.nan) for key in keys), math.nan, math.nan)
-            for place, law in found.model.friction_at.items()
+            *(
+                (
+                    joint,
+                    *(law.get(key, math.nan) for key in keys),
+                    float(found.model.rotor_inertia[j]),
+                    float(found.model.torque_deviation[j]),
+                )
+                for j, (joint, law) in enumerate(
+                    zip(found.joints, found.model.friction, strict=True)
+                )
+            ),
+            *(
+                (place, *(law.get(key, math.nan) for key in keys), math.nan, math.nan)
+                for place, law in found.model.friction_at.items()
+            ),
         ],
         note="fv qd + fo + (fc + fl |g(q)| + fm + fs exp(-(qd / vs)²)) tanh((qd + shift) / width); with a distance, fm "
         "and fs lag behind a reversal by about so much; prismatic joints: m for rad, N for N m, kg for kg m². fo and "
