@@ -114,26 +114,17 @@ _FRICTION_UNITS = {
 def _friction(found: Identification) -> ReportTable:
     keys = dict.fromkeys(key for law in found.model.friction for key in law if key != "law")
     units = (f"{key} [{_FRICTION_UNITS.get(key, 'N m')}]" for key in keys)
+    model = found.model
+    motors = zip(model.rotor_inertia.tolist(), model.torque_deviation.tolist(), strict=True)
+    laws = [*zip(found.joints, model.friction, motors, strict=True)]
+    laws += [(place, law, (math.nan, math.nan)) for place, law in model.friction_at.items()]
+    rows: list[tuple[str | float, ...]] = [
+        (place, *(law.get(key, math.nan) for key in keys), *motor) for place, law, motor in laws
+    ]
     return ReportTable(
         title="Friction, rotor inertia and 95 % band of each joint",
         headings=("joint", *units, "rotor inertia [kg m²]", "band [N m]"),
-        rows=[
-            *(
-                (
-                    joint,
-                    *(law.get(key, math.nan) for key in keys),
-                    float(found.model.rotor_inertia[j]),
-                    float(found.model.torque_deviation[j]),
-                )
-                for j, (joint, law) in enumerate(
-                    zip(found.joints, found.model.friction, strict=True)
-                )
-            ),
-            *(
-                (place, *(law.get(key, math.nan) for key in keys), math.nan, math.nan)
-                for place, law in found.model.friction_at.items()
-            ),
-        ],
+        rows=rows,
         note="fv qd + fo + (fc + fl |g(q)| + fm + fs exp(-(qd / vs)²)) tanh((qd + shift) / width); with a distance, fm "
         "and fs lag behind a reversal by about so much; prismatic joints: m for rad, N for N m, kg for kg m². fo and "
         "shift may do work, and differ between recordings.",
