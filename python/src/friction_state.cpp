@@ -72,9 +72,14 @@ void bindFrictionState(py::module_& module, py::class_<Solver>& solver) {
         return State{inverse_dynamics_solver::frictionState(of.get()),
                      static_cast<py::ssize_t>(of.joints().size())};
       },
-      "A FrictionState that knows nothing of the motion so far.\n\n"
-      "Friction and torques of a solver are the limit without memory; a state adds what friction\n"
-      "remembers, if it does.");
+      R"(What friction remembers of a motion.
+
+Friction and torques of a solver are the limit without memory; a state adds what friction remembers, if it does.
+
+Returns
+-------
+FrictionState
+    It knows nothing of the motion so far.)");
 }
 
 }  // namespace inverse_dynamics_tools

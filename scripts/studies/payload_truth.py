@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics import Solver, _core, evaluate
-from inverse_dynamics.identification.blocks import FEWEST, block_of
+from inverse_dynamics.identification.blocks import FEWEST, block_of, data_of
 from inverse_dynamics.identification.cross_validation import choose
 from inverse_dynamics.identification.files import model_file_text
 from inverse_dynamics.identification.knowledge import knowledge
@@ -83,8 +83,10 @@ class Arm:
             edges = ((0, first), (after, len(evaluation.time)))
             rest = [block_of(evaluation, slice(a, b)) for a, b in edges if b - a >= FEWEST]
             within = (samples.time >= begin) & (samples.time < begin + seconds)
-            windows.append(part(samples, within))
             models.append(_model(found, rest, directory, len(models), nested=nested))
+            remembered = models[-1][0].friction_state().along(samples.q, samples.qd)
+            alone = replace(samples, measured=samples.measured - remembered)  # as samples_of() does
+            windows.append(part(alone, within))
         solvers, uncertainties = zip(*models, strict=True)
         residuals = [w.measured - torques(s, w) for w, s in zip(windows, solvers, strict=True)]
         return cls(tuple(windows), solvers, uncertainties, tuple(residuals))
@@ -121,7 +123,7 @@ def _model(
     later = [block.later(delay) for block in rest]
     options = _core.ArmFitOptions(law, prior_strength=strength)
     if not nested:
-        fit = fitter.fit(fitter.data([block.fitted for block in later]), options)
+        fit = fitter.fit(data_of(fitter, later), options)
     known = knowledge(fitter, fit, later, options)
     factor = factor_of(fitter, fit, later, known, law=law)
     model = replace(

@@ -117,7 +117,7 @@ TEST(ArmDeviations, RefuseOthersOfTheirArm) {
   ArmUncertainty uncertainty = someUncertainty(2, 1);
   EXPECT_EQ(error(uncertainty), "none");
   uncertainty.friction.pop_back();
-  EXPECT_THAT(error(uncertainty), HasSubstr("7 laws of friction"));
+  EXPECT_THAT(error(uncertainty), HasSubstr("laws of friction of 7 joints"));
   uncertainty = someUncertainty(2, 1);
   uncertainty.factor(3, 1) = std::nan("");
   EXPECT_THAT(error(uncertainty), HasSubstr("not all of them finite"));

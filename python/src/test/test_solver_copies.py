@@ -137,6 +137,8 @@ def identified():
         torque_deviation=np.ones(n),
         seen=np.tile([-1.0, 1.0], (3, n, 1)),
         coupling=None,
+        friction_at={},
+        springs=None,
     )
     return FastModel.from_urdf(CHAIN).identified(found)
 
