@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
@@ -131,8 +132,10 @@ bool isTree(const Solver& solver, const chain_dynamics::RobotDescription& robot)
   return false;
 }
 
-/// The coordinates of a tree, which joints that mimic them restrict.
+/// The coordinates of a tree, those of its model file or which joints that mimic them restrict.
 std::vector<chain_dynamics::Joint> treeJoints(const Solver& solver) {
+  const std::string model = textParameter(solver, "model");
+  if (!model.empty()) return chain_dynamics::modelFromFile(model).chain.joints();
   const auto& origin = solver.origin();
   const auto configuration = ids::readConfiguration(origin.parameters, "", origin.urdf);
   return mechanismFromDescription(configuration).coordinates.joints();
@@ -161,7 +164,7 @@ ParameterDict limitsOf(const Solver& solver) {
   for (const char* const name : {"lower", "upper", "velocity", "effort"}) {
     found[name].setConstant(n, name == std::string("lower") ? -kNone : kNone);
   }
-  for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(joints.size()); ++j) {
+  for (Eigen::Index j = 0; j < std::min(n, static_cast<Eigen::Index>(joints.size())); ++j) {
     for (const auto& [name, value] : py::dict(joints[static_cast<std::size_t>(j)])) {
       const auto [of, is_new] = found.try_emplace(name.cast<std::string>());
       if (is_new) of->second.setConstant(n, kNone);

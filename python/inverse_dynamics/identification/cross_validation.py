@@ -117,7 +117,7 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
         blocks=blocks,
         fit=fit,
         band=np.quantile(errors, _BAND, axis=0),
-        noise=noise_in_motion(errors, qd, fit.friction),
+        noise=noise_in_motion(errors, qd, fit.friction[: qd.shape[1]]),
         choices=choices,
     )
 
