@@ -31,5 +31,7 @@ if(PinocchioHeaders_FOUND AND NOT TARGET Pinocchio::headers)
     # Its lists of joint types and arguments are longer than Boost's are by default; it asks for joint types that a
     # collection of fewer doesn't have [pinocchio_headers.hpp].
     INTERFACE_COMPILE_DEFINITIONS "BOOST_MPL_CFG_NO_PREPROCESSED_HEADERS;BOOST_MPL_LIMIT_LIST_SIZE=30;BOOST_MPL_LIMIT_VECTOR_SIZE=30;BOOST_FUSION_INVOKE_MAX_ARITY=12;BOOST_VARIANT_USE_RELAXED_GET_BY_DEFAULT"
+    # Of constructors that GCC 14 expands into their callers.
+    INTERFACE_COMPILE_OPTIONS "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>"
     INTERFACE_LINK_LIBRARIES Eigen3::Eigen)
 endif()
