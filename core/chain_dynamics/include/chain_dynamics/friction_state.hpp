@@ -10,7 +10,7 @@
 ///
 /// A gear yields before it slips: after a reversal, friction turns round over a distance d instead of
 /// at once, and a joint that stands still keeps the friction of the motion before. Dahl's law says so
-/// with one number z per joint, the part of the presliding friction fm that acts, as it changes with
+/// with one number z per joint, the part of the presliding friction p that acts, as it changes with
 /// the joint's path s [Dahl 1968, A solid friction model, Aerospace Corporation TOR-0158(3107-18)-1]:
 ///
 ///     dz = (sign(ds) - z) |ds| / d,      z in [-1, 1],      p = fm + fs exp(-(qd / vs)^2).
@@ -44,8 +44,8 @@ struct Model;
 /// @tparam Number  double or a dual number.
 template <typename Number>
 struct Presliding {
-  Number z = Number(0);        ///< part of the presliding friction that is known to act, in [-1, 1]
-  Number unknown = Number(1);  ///< part that isn't known, in [0, 1]
+  Number z = 0.0;        ///< part of the presliding friction that is known to act, in [-1, 1]
+  Number unknown = 1.0;  ///< part that isn't known, in [0, 1]
 
   /// Goes on by `by` [rad; prismatic m]: exact for a step of any length in one direction.
   ///
