@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which friction law, prior strength and delay: by predicting each block from the others.
 
-The simplest alternative within two standard errors of the best is taken: laws in the order of LAWS,
-then stronger priors. The standard error is that of the difference, so a richer model needs evidence at the
-level of 95 %: one that predicts only a little better by chance is a worse model of what the motion excites
-less, as a load at the tip.
+The strength of the prior is chosen with the simplest law, then the law, then the strength with that law. The simplest
+alternative within two standard errors of the best is taken: laws in the order of LAWS, then stronger priors. The
+standard error is that of the difference, so a richer model needs evidence at the level of 95 %: one that predicts only
+a little better by chance is a worse model of what the motion excites less, as a load at the tip.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ _WEAKEST = 1e-4
 _CLEARLY = 0.9  # of the error with the usual prior
 _SETTLED = 0.99  # of the error with the prior before: weaker ones aren't tried
 
-# Of the error of the best law without memory: one with memory that gains less on parts of one recording gains nothing
-# on others, and weighs loads worse (Panda: by 2.1 % for 1.0 % of the mass).
+# Of the error of the best law without memory, below which the law with memory must be: one that gains less on parts of
+# one recording gains nothing on others, and weighs loads worse (Panda: errors of 2.1 % of the mass instead of 1.0 %).
 _CLEARLY_REMEMBERS = 0.925
 
 _STANDARD_ERRORS = 2.0  # by which a simpler alternative may be worse than the best
@@ -186,7 +186,7 @@ class _Parts:
 def _parts_of(
     fitter: ArmFitter, blocks: Sequence[Block], recorded: _Parts, step: int
 ) -> dict[str, _Parts]:
-    """Parts for each law, with the delay made up for that it finds, if those that are left out are predicted better.
+    """Parts for each law, with the delay made up for that it finds.
 
     Friction that lags behind a reversal looks like a delay to a law without memory; a law with memory may take some of
     its own lag back. So the lesser one of both delays is that of the law with memory.
@@ -210,6 +210,7 @@ def _with_delay(
     delay: float,
     start: ArmFit,
 ) -> _Parts:
+    """The parts with the delay made up for, if the law then predicts those that are left out better."""
     if delay == 0:
         return recorded
     later = _Parts(fitter, blocks, delay, step)
