@@ -21,7 +21,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from public_arms import ARMS, MASTER_GEARS, Arm, missing_clones
+from public_arms import ARMS, Arm, missing_clones
 from scipy.io import loadmat
 from scipy.signal import butter, filtfilt
 from studies import MOST_SAMPLES, recording_of, show, solved, table
@@ -80,13 +80,10 @@ class Protocol:
     filtered: Callable[[Floats], Floats] | None = (
         None  # torques of all samples; else the valid ones count
     )
-    motors: Floats | None = None  # (n, n) torques of joints times this are those of motors
 
     def of(self, test: Evaluation, predicted: Floats) -> float:
         """The error of predicted torques (N, n)."""
-        torques = [test.measured, predicted]
-        if self.motors is not None:
-            torques = [each @ self.motors for each in torques]
+        torques = (test.measured, predicted)
         if self.filtered is not None:
             return self.error(*map(self.filtered, torques))
         return self.error(*(each[test.samples.kept] for each in torques))
@@ -169,12 +166,10 @@ PROTOCOLS = (
     Protocol(
         "da Vinci master",
         Part(["one"]),
-        Part(["two"]),
+        Part(["two"], end=10),
         "%",
         relative,
         _stated(21.0, "convex fit"),
-        partial(low_passed, 6, 1.8 * 2 * np.pi / 200, slice(200, 2200)),
-        np.asarray(np.linalg.inv(MASTER_GEARS), dtype=np.float64),
     ),
     *(
         Protocol(
@@ -238,6 +233,8 @@ class LeastSquares:
         self._solver = Solver(
             PINOCCHIO, urdf=text, root=robot.root, tip=robot.tip, gravity=robot.gravity
         )
+        motors = robot.parameters.get("motors", np.eye(len(self._solver.joint_names)))
+        self._motors = np.reshape(motors, (len(self._solver.joint_names), -1))
         rows = [np.flatnonzero(e.samples.kept) for e in train]
         rows = [kept[:: 1 + len(kept) // MOST_SAMPLES] for kept in rows]
         self._columns = np.concatenate([self._of(e, r) for e, r in zip(train, rows, strict=True)])
@@ -264,7 +261,8 @@ class LeastSquares:
 
     def _of(self, e: Evaluation, rows: Any) -> Floats:
         q, qd, qdd = e.log.q[rows], e.log.qd[rows], e.qdd[rows]
-        links = self._solver.regressor(q, qd, qdd).reshape(*q.shape, -1)
+        M = self._motors  # positions of joints by those of motors
+        links = M.T @ self._solver.regressor(q @ M.T, qd @ M.T, qdd @ M.T)
         own = (qdd, qd, np.tanh(qd / WIDTH), np.ones_like(qd))
         each = [term[:, :, None] * np.eye(q.shape[1]) for term in own]
         return np.concatenate([links, *each], axis=2)
@@ -345,7 +343,8 @@ if __name__ == "__main__":
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     clones, part = Path(sys.argv[1]), next((x for x in sys.argv[2:] if x[0] != "-"), "")
-    missing = missing_clones(clones, list(ARMS))
+    named = dict.fromkeys(protocol.robot for protocol in PROTOCOLS)
+    missing = missing_clones(clones, [robot for robot in named if robot in ARMS])
     left_out = {line.partition(":")[0] for line in missing}
     rows = []
     for protocol in PROTOCOLS:

@@ -20,7 +20,7 @@ from studies import DOCS, recording_of
 
 from inverse_dynamics import cli, load_robot
 from inverse_dynamics.robots.robot_files import robot_text
-from inverse_dynamics.robots.robots import Robot, robot_of_description
+from inverse_dynamics.robots.robots import robot_of_description
 
 UNISA = "unisa-acg/inverse-dynamics-solver"
 
@@ -45,41 +45,12 @@ def of_the_project(name: str, robot: str) -> Source:
         link(out / recording.name, recording)
         described = load_robot(robot).urdf
         assert described is not None
-        file = written(robot_of_description(described), out / f"{name}.yaml")
+        file = out / f"{name}.yaml"
+        arm = replace(robot_of_description(described), effort="torque")
+        file.write_text(robot_text(arm, file), encoding="utf-8")
         return Arm(file, {"excitation": out / recording.name})
 
     return Source(UNISA, "BSD-3-Clause", read)
-
-
-def xmate(clone: Path, out: Path) -> Arm:
-    """Torques at 1 kHz, without time."""
-    description = out / "xmate_dh.yaml"
-    description.write_text(
-        """\
-convention: modified
-degrees: true
-joints:
-  - {a: 0, alpha: 0, d: 0.3415}
-  - {a: 0, alpha: -90, d: 0}
-  - {a: 0, alpha: 90, d: 0.394}
-  - {a: 0, alpha: -90, d: 0}
-  - {a: 0, alpha: 90, d: 0.366}
-  - {a: 0, alpha: -90, d: 0}
-  - {a: 0, alpha: 90, d: 0.2503}
-""",
-        encoding="utf-8",
-    )
-    data = clone / "filtering/data/excit"
-    columns = "q=excit_ang_record.point_record[*], qd=speed_record[*], effort=torque_record[*]"
-    robot = replace(robot_of_description(description), columns=columns, rate=1000.0)
-    files = "+".join(f"{data}/excit_{name}_record.mat" for name in ("ang", "vel", "torque"))
-    return Arm(written(robot, out / "xmate.yaml"), {"excitation": Path(files)})
-
-
-def written(robot: Robot, file: Path) -> Path:
-    """A run configuration of torques."""
-    file.write_text(robot_text(replace(robot, effort="torque"), file), encoding="utf-8")
-    return file
 
 
 GALLERY = {
@@ -131,7 +102,7 @@ GALLERY = {
         "758dc8d, published in March 2026",
     ),
     "xmate": Entry(
-        Source("NEUer02/Dynamic_Parameter_Identification_for_Rokae_xMate", "none stated", xmate),
+        ARMS["Rokae xMate"],
         ("excitation",),
         "Rokae xMate3 Pro",
         "f044daf, published in 2025",

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.signal import butter, filtfilt
 
 from inverse_dynamics.robots.robots import RIGID_BODY
 
@@ -23,9 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
 NNFM = "longshike/NNFM-A-Novel-Neural-Network-Modeling-Approach-for-Robot-Flexible-Joints-Friction"
-MASTER_GEARS = np.eye(7)  # angles of the da Vinci master's motors by those of its joints
-MASTER_GEARS[2, 1] = 1.0
-MASTER_GEARS[3, 2] = 0.6697
+MASTER = Path(__file__).resolve().parents[2] / "examples/dvrk_mtm/mtm.yaml"
 
 
 @dataclass(frozen=True)
@@ -135,73 +134,18 @@ def another_panda(clone: Path, out: Path) -> Arm:
 
 
 def master_arm(clone: Path, out: Path) -> Arm:
-    """Torques of the da Vinci master's seven motors at 200 Hz.
-
-    A parallelogram: the third motor turns the elbow against the upper arm, the fourth one the platform of the wrist
-    against what the elbow turns it.
-    """
-    urdf = out / "master_arm.urdf"
-    urdf.write_text(_master_arm(), encoding="utf-8")
-    recorded = clone / "data/mtm/measured_trajectory"
-    return Arm(
-        _configuration(
-            out / "master_arm.yaml",
-            urdf=urdf,
-            tip="*",
-            table={
-                "columns": "q=1-7, qd=8-14, effort=15-21",
-                "rate": 200,
-                "gears": MASTER_GEARS.ravel().tolist(),
-            },
-            friction_at={"elbow": {"elbow_joint": 1}, "platform": {"platform_joint": 1}},
-            fit_springs={"platform_joint": "linear", "pitch_joint": "lever"},
-        ),
-        {x: recorded / f"{x}_results.csv" for x in ("one", "two")},
-        # Velocities of the two fast joints at the wrist aren't the slopes of positions; masses are guesses, and
-        # weights balance the arm.
-        accept=("velocity", "no_gravity", "total_mass"),
-    )
-
-
-def _master_arm() -> str:
-    """URDF; masses [kg] and centers [m] are halfway between the owners' bounds."""
-    lines = ['<robot name="master_arm">', '<link name="base"/>']
-    for link, parent, (
-        a,
-        alpha,
-        d,
-        theta,
-    ), mass, center, follows in (  # modified parameters, m and degrees
-        ("yaw", "base", (0, 0, -0.2154, 0), 6, "0 0 0.1", ""),
-        ("shoulder", "yaw", (0, -90, 0, 90), 4, "0.025 0 0", ""),
-        ("elbow", "shoulder", (0.2794, 0, 0, 90), 1.6, "0.15 0 0", ""),
-        ("platform", "elbow", (0.3645, -90, 0.151, 0), 0.3, "0 0.06 -0.075", ""),
-        ("pitch", "platform", (0, 90, 0, 0), 0.22, "0 -0.05 -0.05", ""),
-        ("wrist_yaw", "pitch", (0, -90, 0, 90), 0.16, "0 0.05 -0.05", ""),
-        ("roll", "wrist_yaw", (0, -90, 0, 180), 0.1, "0 0 0.05", ""),
-        ("drive", "shoulder", (0, 0, 0, 90), 3, "0 0 0", '<mimic joint="elbow_joint"/>'),
-        (
-            "rod",
-            "drive",
-            (0.1, 0, 0, -90),
-            0.3,
-            "0.125 0 0.06",
-            '<mimic joint="elbow_joint" multiplier="-1"/>',
-        ),
-    ):
-        turn, offset = np.radians([alpha, theta])
-        moment = mass * 1e-3  # kg m^2, a guess
-        lines += [
-            f'<link name="{link}_axis"/>',
-            f'<joint name="{link}_axis" type="fixed"><parent link="{parent}"/><child link="{link}_axis"/>'
-            f'<origin xyz="{a} {-np.sin(turn) * d:.9g} {np.cos(turn) * d:.9g}" rpy="{turn:.9g} 0 0"/></joint>',
-            f'<link name="{link}"><inertial><origin xyz="{center}"/><mass value="{mass}"/>'
-            f'<inertia ixx="{moment}" iyy="{moment}" izz="{moment}" ixy="0" ixz="0" iyz="0"/></inertial></link>',
-            f'<joint name="{link}_joint" type="revolute"><parent link="{link}_axis"/><child link="{link}"/>'
-            f'<origin rpy="0 0 {offset:.9g}"/><axis xyz="0 0 1"/>'
-            f'<limit lower="-9" upper="9" effort="5" velocity="10"/>{follows}</joint>',
-        ]
-    return "\n".join([*lines, "</robot>", ""])
+    """Torques of the da Vinci master's seven motors, low-passed as docs/parallelogram.md says."""
+    b, a = butter(6, 1.8 * 2 * np.pi / 200)
+    names = ",".join(["time", *(f"{key}{k}" for key in ("q", "qd", "tau") for k in range(1, 8))])
+    recordings = {}
+    for label in ("one", "two"):
+        file = clone / f"data/mtm/measured_trajectory/{label}_results.csv"
+        log = filtfilt(b, a, np.loadtxt(file, delimiter=","), axis=0)[200:-200]
+        recordings[label] = out / f"{label}.csv"
+        rows = np.column_stack([np.arange(len(log)) / 200, log])
+        np.savetxt(recordings[label], rows, delimiter=",", header=names, comments="")
+    # Velocities of two fast joints at the wrist aren't the slopes of positions; masses are guesses.
+    return Arm(MASTER, recordings, accept=("velocity", "total_mass"))
 
 
 def sawyer(clone: Path, out: Path) -> Arm:
@@ -250,6 +194,38 @@ def ar5(clone: Path, out: Path) -> Arm:
             out / "ar5.yaml", urdf=clone / "urdf/AR5-5_07R-W4C4A2.urdf", gravity=[9.81, 0, 0]
         ),
         {"excitation": clone / "src/config/dynamics_identification_data_real.csv"},
+    )
+
+
+def xmate(clone: Path, out: Path) -> Arm:
+    """Torques at 1 kHz, without time."""
+    description = out / "xmate_dh.yaml"
+    description.write_text(
+        """\
+convention: modified
+degrees: true
+joints:
+  - {a: 0, alpha: 0, d: 0.3415}
+  - {a: 0, alpha: -90, d: 0}
+  - {a: 0, alpha: 90, d: 0.394}
+  - {a: 0, alpha: -90, d: 0}
+  - {a: 0, alpha: 90, d: 0.366}
+  - {a: 0, alpha: -90, d: 0}
+  - {a: 0, alpha: 90, d: 0.2503}
+""",
+        encoding="utf-8",
+    )
+    data = clone / "filtering/data/excit"
+    columns = "q=excit_ang_record.point_record[*], qd=speed_record[*], effort=torque_record[*]"
+    files = "+".join(f"{data}/excit_{name}_record.mat" for name in ("ang", "vel", "torque"))
+    return Arm(
+        _configuration(
+            out / "xmate.yaml",
+            urdf=description,
+            effort="torque",
+            table={"columns": columns, "rate": 1000},
+        ),
+        {"excitation": Path(files)},
     )
 
 
@@ -388,6 +364,9 @@ ARMS = {
     "Sawyer": Source("songtangzhong/robot-dynamics-identify-v1.3", "none stated", sawyer),
     "KUKA LBR Med 7": Source("lbr-stack/dynamic_parameter_identification", "none stated", med7),
     "Rokae AR5": Source("FrankJIE09/Dynamics_identification_Frank", "none stated", ar5),
+    "Rokae xMate": Source(
+        "NEUer02/Dynamic_Parameter_Identification_for_Rokae_xMate", "none stated", xmate
+    ),
     "UR5": Source("kkufieta/ur5_modeling_force_estimate", "Apache-2.0", ur5),
     "cobot": Source("Naruton94/robot_identification", "none stated", cobot),
     "Franka joint 2": Source(NNFM, "none stated", franka_joint(2, case=3)),
