@@ -9,6 +9,7 @@ robot: `ids identify ... --gallery project`. It runs in a directory with links t
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from dataclasses import dataclass, replace
@@ -135,7 +136,9 @@ def identify(name: str, entry: Entry, arm: Arm) -> None:
         source=f"https://github.com/{repository} at commit {entry.dates}; {licence}. {entry.note}",
     )
     file = Path(f"{name}.yaml")
-    file.write_text(robot_text(robot, file), encoding="utf-8")
+    keys = ("parameters", "friction_at", "fit_springs")  # which robot_text() leaves out
+    more = [f"{key}: {json.dumps(getattr(robot, key))}\n" for key in keys if getattr(robot, key)]
+    file.write_text("".join([robot_text(robot, file), *more]), encoding="utf-8")
     tests = [x for label in entry.held_out for x in ("--hold-out", arm.recordings[label])]
     accepted = [x for kind in arm.accept for x in ("--accept", kind)]
     recordings = [arm.recordings[label] for label in entry.fitted]
