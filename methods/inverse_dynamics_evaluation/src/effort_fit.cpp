@@ -156,16 +156,20 @@ CutoffChoice EffortFit::choose(CutoffChoice motion, const Differentiate& differe
   const Eigen::ArrayXd start = scored(before);
   const double lowest = std::max(motion.lowest, kAboveMotion * motion.motion);
   const double highest = std::min(motion.highest, kAbove * motion.by_motion);
+  const auto clearly = [](const Eigen::ArrayXd& saved) {
+    const double variance = (saved - saved.mean()).square().sum() / (kParts - 1) / kParts;
+    return saved.mean() > kStandardErrors * std::sqrt(variance);
+  };
+  // from the highest on: a lower one takes away more of the motion, so it must be better
+  Eigen::ArrayXd best = Eigen::ArrayXd::Zero(kParts);
   for (double cutoff = highest; cutoff >= lowest; cutoff /= kRatio) {
     differentiate(cutoff);
     const Eigen::ArrayXd saved = start - scored(errors());
     const double gain = saved.mean() / start.mean();
-    const double standard_error =
-        std::sqrt((saved - saved.mean()).square().sum() / (kParts - 1) / kParts);
-    if (gain > std::max(motion.gain, kLeastGain) &&
-        saved.mean() > kStandardErrors * standard_error) {
+    if (gain > std::max(motion.gain, kLeastGain) && clearly(saved) && clearly(saved - best)) {
       motion.gain = gain;
       motion.cutoff = cutoff;
+      best = saved;
     }
   }
   return motion;

@@ -218,6 +218,9 @@ def estimate_payload(
     if empty is not None:
         without = evaluate(empty, robot, progress=progress, **options)
         _require_plausible(without)
+        if evaluation.accelerations.by_efforts:  # which the model without the load doesn't explain
+            options["cutoff"] = without.accelerations.cutoff
+            evaluation = evaluate(bag, robot, progress=progress, **options)
         unloaded = samples_of(without)
         alone = empty_run(unloaded, solver)
         _require_motion(unloaded, str(without.bag), "without the load")

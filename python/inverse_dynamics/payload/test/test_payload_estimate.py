@@ -496,3 +496,34 @@ def test_the_load_of_a_tree_is_that_of_the_first_tip(tips: tuple[str, str], tmp_
     file.write_text(yaml_text(found))
     carrying = evaluate(table, urdf=urdf, tip=two_arms.ARMS, parameters=option(f"{file}"))
     assert max(error.rmse for error in carrying.errors) < 0.05
+
+
+def test_where_the_arm_vibrates_the_run_without_the_load_tells_the_cut_off() -> None:
+    """Torques of a model without the load would choose another one by the efforts with it."""
+
+    def vibrating(load: float) -> dict[str, np.ndarray]:
+        random = np.random.default_rng(3)
+        time = np.arange(0, 10, 1 / RATE)
+        q, qd, qdd = waves(time, random.uniform(0.6, 3.1, (6, 4)), lambda w: 0.2 + 0.0 * w, random)
+        arm = Solver("ur10_simulated")
+        if load > 0:
+            arm.set_payload("load", load, center_of_mass=[0.02, 0.03, 0.1])
+        effort = arm.torques(q, qd, qdd) + random.normal(0, 0.3, q.shape)
+        shaken = waves(time, random.uniform(126, 502, (6, 20)), lambda w: 0.3 / w**2, random)
+        return {"time": time, "q": q + shaken[0], "qd": qd + shaken[1], "effort": effort}
+
+    empty, loaded = vibrating(0.0), vibrating(8.0)
+    told, other = (evaluate(t, "ur10_simulated").accelerations for t in (empty, loaded))
+    assert told.by_efforts
+    assert other.by_efforts
+    assert told.cutoff != other.cutoff
+    found = estimate_payload(loaded, "ur10_simulated", empty=empty)
+    assert found.evaluation.accelerations.cutoff == told.cutoff
+    assert abs(found.estimate.mass - 8.0) < found.estimate.mass_half_width
+
+
+def waves(time, w, size, random):
+    """(N, n) sums of sines of w rad/s, and their derivatives."""
+    phase = w * time[:, None, None] + random.uniform(0, 6.28, w.shape)
+    a, s, c = size(w), np.sin(phase), np.cos(phase)
+    return (a * s).sum(2), (a * w * c).sum(2), -(a * w**2 * s).sum(2)
