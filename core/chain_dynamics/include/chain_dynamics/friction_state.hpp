@@ -15,12 +15,10 @@
 ///
 ///     dz = (sign(ds) - z) |ds| / d,      z in [-1, 1],      p = fm + fs exp(-(qd / vs)^2).
 ///
-/// z depends on the path alone, not on time: it doesn't change while a joint stands still. A play of
-/// d / 20 on either side of the joint, which s leaves out, keeps encoder noise from adding to the path. The
-/// limit without memory [friction_laws/smooth_coulomb.hpp] has tanh((qd + shift) / width) instead of z.
-/// Where z isn't known, at the beginning, the part u of it that isn't takes that value: u falls from 1 as
-/// exp(-path / d). `(fm + fs) u` bounds the error at rest; in motion, where the start was opposite, it is up
-/// to twice that.
+/// z depends on the path alone, not on time: it doesn't change while a joint stands still. The limit
+/// without memory [friction_laws/smooth_coulomb.hpp] has tanh((qd + shift) / width) instead of z. Where
+/// z isn't known, at the beginning, the part u of it that isn't takes that value: u falls from 1 as
+/// exp(-path / d), and `(fm + fs) u` bounds the error.
 ///
 /// Real time: all functions but constructors: no allocation, lock, exception or system call.
 /// Threads: each has its own state.
@@ -53,21 +51,13 @@ struct Presliding {
   ///
   /// @param distance  d > 0; rad (prismatic m).
   void move(double by, const Number& distance) {
-    using std::abs;
     using std::exp;
-    constexpr double kPlay = 0.05;  // of the distance: above the noise of encoders
-    const Number play = kPlay * distance;
-    slack_ += by;
-    if (!(abs(slack_) > play)) return;
-    const double sign = slack_ > 0 ? 1 : -1;
-    const Number left = exp((play - abs(slack_)) / distance);
-    slack_ = sign * play;
+    if (!(by != 0)) return;
+    const double sign = by > 0 ? 1 : -1;
+    const Number left = exp(-std::abs(by) / distance);
     z = sign + (z - sign) * left;
     unknown = unknown * left;
   }
-
- private:
-  Number slack_ = 0.0;  // of the joint from the middle of the play
 };
 
 /// What the friction of a robot remembers.
