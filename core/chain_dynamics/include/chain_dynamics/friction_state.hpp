@@ -18,7 +18,7 @@
 /// z depends on the path alone, not on time: it doesn't change while a joint stands still. The limit
 /// without memory [friction_laws/smooth_coulomb.hpp] has tanh((qd + shift) / width) instead of z. Where
 /// z isn't known, at the beginning, the part u of it that isn't takes that value: u falls from 1 as
-/// exp(-path / d), and `(fm + fs) u` bounds the error.
+/// exp(-path / d). `(fm + fs) u` bounds the error at rest; in motion it is up to twice that.
 ///
 /// Real time: all functions but constructors: no allocation, lock, exception or system call.
 /// Threads: each has its own state.
