@@ -84,11 +84,9 @@ class Arm:
             rest = [block_of(evaluation, slice(a, b)) for a, b in edges if b - a >= FEWEST]
             within = (samples.time >= begin) & (samples.time < begin + seconds)
             models.append(_model(found, rest, directory, len(models), nested=nested))
-            remembered = models[-1][0].friction_state().along(samples.q, samples.qd)
-            alone = replace(samples, measured=samples.measured - remembered)  # as samples_of() does
-            windows.append(part(alone, within))
+            windows.append(part(samples, within))
         solvers, uncertainties = zip(*models, strict=True)
-        residuals = [w.measured - torques(s, w) for w, s in zip(windows, solvers, strict=True)]
+        residuals = [w.residual(s) for w, s in zip(windows, solvers, strict=True)]
         return cls(tuple(windows), solvers, uncertainties, tuple(residuals))
 
     def taken_for_exact(self) -> Arm:
@@ -142,11 +140,6 @@ def part(samples: Samples, which: slice | Mask) -> Samples:
     return Samples(*(values[which] for values in vars(samples).values()))
 
 
-def torques(solver: Solver, samples: Samples) -> Floats:
-    """(N, n) N m, without a load."""
-    return solver.torques(samples.q, samples.qd, samples.qdd)
-
-
 def trial(arm: Arm, mass: float, random: np.random.Generator, elsewhere: bool) -> Floats:
     """(2, 4): errors of mass [kg] and center of mass [m], and the half widths of their intervals."""
     k = int(random.integers(len(arm.windows)))
@@ -154,7 +147,7 @@ def trial(arm: Arm, mass: float, random: np.random.Generator, elsewhere: bool) -
     if elsewhere:
         residual = arm.residuals[arm.elsewhere(k, random)]
         samples = part(samples, slice(len(residual)))
-        computed = torques(solver, samples)
+        computed = samples.measured - samples.residual(solver)
         samples = replace(samples, measured=computed + residual[: len(computed)])
     load = random_load(mass, random)
     found = fit_payload(with_load(samples, solver, load), solver, arm=arm.uncertainties[k]).estimate

@@ -4,10 +4,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <chain_dynamics/chain.hpp>
+#include <chain_dynamics/friction_state.hpp>
 #include <chain_dynamics/owned.hpp>
 #include <cmath>
 #include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/payload.hpp>
 #include <limits>
@@ -121,6 +123,7 @@ struct PayloadEstimator::Impl {
   Impl(std::shared_ptr<const InverseDynamicsSolver> arm, const PayloadOptions& given)
       : regressor(arm),
         solver(std::move(arm)),
+        friction(frictionState(*solver)),
         deviations(deviationsOf(solver, given.arm)),
         sums(solver->jointCount(), deviationCount(), given.block),
         part(deviationCount()),
@@ -164,6 +167,7 @@ struct PayloadEstimator::Impl {
   Index deviationCount() const { return deviations ? deviations->count() : 0; }
 
   void restart() {
+    friction.reset();
     sums.restart();
     for (auto& filter : filters) filter.restart();
     span.restart();
@@ -189,6 +193,7 @@ struct PayloadEstimator::Impl {
 
   TipRegressor regressor;
   std::shared_ptr<const InverseDynamicsSolver> solver;
+  chain_dynamics::FrictionState friction;
   std::optional<ArmDeviations> deviations;  // none: the model of the arm is exact
   PayloadSums sums;
   double extent = 0.0, model_error = 0.0;
@@ -221,7 +226,9 @@ PayloadStatus PayloadEstimator::Impl::update(double time, const ConstVectorRef& 
   }
   if (!std::isfinite(time)) return PayloadStatus::kNotFinite;
   if (samples > 0 && !(time > last)) return PayloadStatus::kNotLater;
+  friction.move(q);
   solver->getTorques(q, qd, qdd, torques);
+  friction.addTo(qd, torques);
   regressor.compute(q, qd, qdd, Y);
   torques = measured - torques;
   torques.noalias() += Y.lazyProduct(carried);

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <fstream>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <inverse_dynamics_solver/payload.hpp>
 #include <limits>
 #include <memory>
@@ -39,10 +40,13 @@ PayloadEstimate estimateOf(PayloadEstimator& estimator, const InverseDynamicsSol
                            double begin = 0.0, double speed = 1.0) {
   Motion motion;
   motion.speed = speed;
+  auto friction = frictionState(loaded);
   for (Index k = 0; k < std::lround(seconds / kPeriod); ++k) {
     const double time = begin + kPeriod * static_cast<double>(k);
     motion.at(time);
     Eigen::VectorXd measured = loaded.getTorques(motion.q, motion.qd, motion.qdd) + offset;
+    friction.move(motion.q);
+    friction.addTo(motion.qd, measured);
     if (noise != nullptr) measured += noise->next(kPeriod);
     EXPECT_EQ(estimator.update(time, motion.q, motion.qd, motion.qdd, measured),
               PayloadStatus::kOk);
@@ -191,9 +195,9 @@ TEST(PayloadEstimator, WhatTheSolverCarriesAlreadyIsPartOfTheEstimate) {
   EXPECT_LT((a.center_of_mass - b.center_of_mass).norm(), kSettled);
 }
 
-/// An arm whose friction grows with load, as a file.
-std::string armWithLoadFriction() {
-  std::string path = testing::TempDir() + "/arm_with_load_friction.yaml";
+/// An arm whose joints have friction with this term too.
+std::shared_ptr<Solver> armWithFriction(const std::string& term) {
+  const std::string path = testing::TempDir() + "/arm_with_friction.yaml";
   std::ofstream file(path);
   file << "schema: 2\nname: arm\nsource: a test\nvalidity: a test\nunits: SI\n"
           "geometry: placements\ngravity: [0, 0, -9.81]\nparameters: about_origin\njoints:\n";
@@ -201,21 +205,32 @@ std::string armWithLoadFriction() {
     file << "  - name: joint" << j << "\n    type: revolute\n"
          << "    placement: {xyz: [0, 0, 0.2], rpy: [0, 0, 0], axis: "
          << (j % 2 == 0 ? "[0, 0, 1]" : "[0, 1, 0]") << "}\n"
-         << "    friction: {law: smooth_coulomb, fv: 0.5, fc: 1, width: 0.05, fl: 0.1}\n"
+         << "    friction: {law: smooth_coulomb, fv: 0.5, fc: 1, width: 0.05, " << term << "}\n"
          << "    link: [2, 0, 0, 0.2, 0.1, 0, 0, 0.1, 0, 0.02]\n";
   }
-  return path;
+  file.close();
+  auto solver = std::make_shared<Solver>();
+  solver->initialize({{"model", path}}, "");
+  return solver;
+}
+
+TEST(PayloadEstimator, WhatFrictionRemembersIsNoLoad) {
+  const RigidBody body = box(3.0);
+  const auto arm = armWithFriction("fm: 50, distance: 0.3"),
+             loaded = armWithFriction("fm: 50, distance: 0.3");
+  loaded->setPayload("load", body);
+  PayloadEstimator estimator(arm, optionsWith(noiseOf(0.01, 0.01)));
+  for (const double begin : {0.0, 7.0}) {  // restarted where the arm has moved unseen
+    const auto found =
+        estimateOf(estimator, *loaded, 5.0, nullptr, Eigen::VectorXd::Zero(kJoints), begin);
+    EXPECT_NEAR(found.mass, body.mass, 1e-3);
+    estimator.restart();
+  }
 }
 
 TEST(PayloadEstimator, FrictionThatGrowsWithLoadIsCountedInTwoMoreRounds) {
-  const std::string path = armWithLoadFriction();
-  const auto make = [&path] {
-    auto solver = std::make_shared<Solver>();
-    solver->initialize({{"model", path}}, "");
-    return solver;
-  };
   const RigidBody body = box(3.0);
-  const auto arm = make(), loaded = make();
+  const auto arm = armWithFriction("fl: 0.1"), loaded = armWithFriction("fl: 0.1");
   loaded->setPayload("load", body);
   PayloadOptions options = optionsWith(noiseOf(0.01, 0.01));
   std::vector<double> errors;

@@ -165,8 +165,9 @@ class Samples:
         return self.q, self.qd, self.qdd
 
     def residual(self, solver: Solver) -> Floats:
-        """(N, n) measured minus computed torques."""
-        return self.measured - solver.torques(*self.motion)
+        """(N, n) measured minus computed torques, with what friction remembers of these samples."""
+        remembered = solver.friction_state().along(self.q, self.qd)
+        return self.measured - solver.torques(*self.motion) - remembered
 
 
 @checked
@@ -247,12 +248,10 @@ def estimate_payload(
 
 
 def samples_of(evaluation: Evaluation) -> Samples:
-    """Those without a fault, in ascending time; `measured` without what friction remembers of the motion."""
+    """Those without a fault, in ascending time."""
     kept, log = evaluation.samples.kept, evaluation.log
-    q, qd = log.q[kept], log.qd[kept]
-    remembered = evaluation.arm.solver.friction_state().along(q, qd)
-    measured = torques_with_gravity(evaluation)[kept] - remembered
-    return Samples(evaluation.time[kept], q, qd, evaluation.qdd[kept], measured)
+    measured = torques_with_gravity(evaluation)[kept]
+    return Samples(evaluation.time[kept], log.q[kept], log.qd[kept], evaluation.qdd[kept], measured)
 
 
 def empty_run(samples: Samples, solver: Solver) -> PayloadOptions:

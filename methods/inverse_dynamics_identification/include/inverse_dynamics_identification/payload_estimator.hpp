@@ -14,6 +14,7 @@
 ///     measured - computed = Y(q, qd, qdd) [m, mc, I] + offset + noise,
 ///
 /// with an offset per joint and the noise of residual_noise.hpp, which a Kalman filter makes white.
+/// Computed torques contain what friction remembers of the samples so far [friction_memory.hpp].
 /// What the arm's model may be wrong by, as far as its identification could tell, may be estimated
 /// with the body: K independent deviations z of one standard deviation each [arm_uncertainty.hpp] add
 /// `D(q, qd, qdd)' z`. They are taken out of the normal equations as offsets are.
@@ -151,7 +152,7 @@ class PayloadEstimator {
   /// Real time: no allocation, lock, exception or system call, up to 128 joints and deviations of the arm together.
   PayloadStatus estimate(PayloadEstimate& found) noexcept;
 
-  /// Forgets all samples. Real time: no allocation, lock, exception or system call.
+  /// Forgets all samples, and what friction remembers. Real time: no allocation, lock, exception or system call.
   void restart() noexcept;
 
  private:
