@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -17,6 +18,7 @@ namespace chain_dynamics::friction_state_test {
 using Eigen::VectorXd;
 
 constexpr double kHeight = 3, kDistance = 0.04, kWidth = 0.1;
+constexpr double kPlay = 5e-5;
 constexpr double kRounding = 1e-13;
 
 /// Joints side by side whose friction preslides.
@@ -52,16 +54,18 @@ void move(FrictionState& state, double q) { state.move(VectorXd::Constant(1, q))
 TEST(FrictionState, FollowsDahlsEquation) {
   FrictionState state(model());
   move(state, 0);
-  double z = 0, q = 0;
+  double z = 0, q = 0, s = 0;
   const auto go = [&](double to) {
     constexpr int kSteps = 200'000;
-    const double ds = (to - q) / kSteps;
+    const double dq = (to - q) / kSteps;
     for (int k = 0; k < kSteps; ++k) {  // midpoints: an independent integration
+      q += dq;
+      const double ds = std::clamp(s, q - kPlay, q + kPlay) - s;
+      s += ds;
       const double sign = ds > 0 ? 1 : -1;
       const double half = z + 0.5 * (sign - z) * std::abs(ds) / kDistance;
       z += (sign - half) * std::abs(ds) / kDistance;
     }
-    q = to;
     move(state, to);
     EXPECT_NEAR(atRest(state), kHeight * z, 1e-9) << to;
   };
@@ -83,6 +87,16 @@ TEST(FrictionState, StandingStillChangesNothing) {
   const double before = atRest(state);
   for (int k = 0; k < 10'000; ++k) move(state, 0.03);
   EXPECT_EQ(atRest(state), before);
+}
+
+TEST(FrictionState, TheLastDigitOfAnEncoderWearsNothingOff) {
+  FrictionState state(model());
+  move(state, 0);
+  move(state, 0.03);
+  move(state, 0.03 - kPlay);
+  const double before = atRest(state);
+  for (int k = 0; k < 10'000; ++k) move(state, 0.03 - (k % 2) * 1.9 * kPlay);
+  EXPECT_NEAR(atRest(state), before, kRounding);
 }
 
 TEST(FrictionState, WithoutKnowledgeItIsTheLimitWithinABand) {
