@@ -15,28 +15,23 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from payload_truth import random_load
+from payload_truth import model_of, random_load, solver_of
 
 from inverse_dynamics import Solver, _core
 from inverse_dynamics.evaluation.evaluation import evaluate_run, open_run
-from inverse_dynamics.identification.blocks import blocks_of, data_of, moving
+from inverse_dynamics.identification.blocks import blocks_of, moving
 from inverse_dynamics.identification.drive_gains import identify_drive_gains
-from inverse_dynamics.identification.files import model_file_text
 from inverse_dynamics.identification.identify import BLOCKS
-from inverse_dynamics.identification.knowledge import knowledge
-from inverse_dynamics.identification.uncertainty import factor_of
 from inverse_dynamics.payload.payload import empty_run, fit_payload, samples_of
 from inverse_dynamics.progress import no_progress
 from inverse_dynamics.robots.descriptions import read_description
 from inverse_dynamics.robots.robots import RIGID_BODY
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from inverse_dynamics.arrays import Floats
     from inverse_dynamics.evaluation.evaluation import Evaluation
-    from inverse_dynamics.identification.blocks import Block
     from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.robots.robots import Robot
 
@@ -87,7 +82,7 @@ def hidden_arm(found: Identification, directory: Path, random: np.random.Generat
         rotor_inertia=scaled(found.model.rotor_inertia, 0.2),
         friction=tuple(friction),
     )
-    return _solver_of(replace(found, model=model), directory / "hidden.yaml")
+    return solver_of(found, model, directory / "hidden.yaml")
 
 
 def record(
@@ -126,45 +121,24 @@ def trial(found: Identification, seed: int, directory: Path) -> dict[str, list[F
     results = {}
     for law in LAWS:
         file = directory / f"{law}.yaml"
-        uncertainty = _identify(found, fitter, blocks, law, file)
-        of_model = replace(robot, model=file, friction=True)
-        results[law] = _payload(of_model, uncertainty, alone, loaded, load)
+        model = model_of(found, fitter, blocks, law, STRENGTH, file)
+        results[law] = _payload(
+            replace(robot, model=file, friction=True), *model, alone, loaded, load
+        )
     gains = random.uniform(*GAINS, len(noise))
     results["known load"] = _gains(robot, alone, loaded, load, gains)
     return results
 
 
-def _identify(
-    found: Identification,
-    fitter: _core.ArmFitter,
-    blocks: Sequence[Block],
-    law: str,
-    file: Path,
-) -> _core.ArmUncertainty:
-    """As `ids identify` does after its choices; writes the model."""
-    options = _core.ArmFitOptions(law, prior_strength=STRENGTH)
-    fit = fitter.fit(data_of(fitter, blocks), options)
-    known = knowledge(fitter, fit, blocks, options)
-    factor = factor_of(fitter, fit, blocks, known, law=law)
-    model = replace(
-        found.model,
-        parameters=fit.parameters,
-        rotor_inertia=fit.rotor_inertia,
-        friction=tuple(fit.friction),
-    )
-    _solver_of(replace(found, model=model), file)
-    return _core.ArmUncertainty(fit.friction, factor)
-
-
 def _payload(
     robot: Robot,
+    solver: Solver,
     uncertainty: _core.ArmUncertainty,
     alone: dict[str, Floats],
     loaded: dict[str, Floats],
     load: dict[str, Any],
 ) -> list[Found]:
     """As `ids payload --empty` does."""
-    solver = Solver(RIGID_BODY, model=str(robot.model))
     without = _evaluated(alone, robot)
     empty = empty_run(samples_of(without), solver)
     samples = samples_of(_evaluated(loaded, replace(robot, cutoff=without.accelerations.cutoff)))
@@ -203,11 +177,6 @@ def _fitter(robot: Robot) -> _core.ArmFitter:
     return _core.ArmFitter.from_urdf(
         read_description(robot.urdf), root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
-
-
-def _solver_of(found: Identification, file: Path) -> Solver:
-    file.write_text(model_file_text(found, file.stem))
-    return Solver(RIGID_BODY, model=str(file))
 
 
 def _waves(

@@ -117,22 +117,37 @@ def _model(
     law, strength, delay = found.law, found.prior_strength, found.delay
     if nested:
         chosen = choose(fitter, rest)
-        law, strength, delay, fit = chosen.law, chosen.prior_strength, chosen.delay, chosen.fit
+        law, strength, delay = chosen.law, chosen.prior_strength, chosen.delay
     later = [block.later(delay) for block in rest]
+    return model_of(found, fitter, later, law, strength, directory / f"{robot.name}_{k}.yaml")
+
+
+def model_of(
+    found: Identification,
+    fitter: _core.ArmFitter,
+    blocks: Sequence[Block],
+    law: str,
+    strength: float,
+    file: Path,
+) -> tuple[Solver, _core.ArmUncertainty]:
+    """That of `ids identify` after its choices, written to the file. found: of the same arm."""
     options = _core.ArmFitOptions(law, prior_strength=strength)
-    if not nested:
-        fit = fitter.fit(data_of(fitter, later), options)
-    known = knowledge(fitter, fit, later, options)
-    factor = factor_of(fitter, fit, later, known, law=law)
-    model = replace(
+    fit = fitter.fit(data_of(fitter, blocks), options)
+    known = knowledge(fitter, fit, blocks, options)
+    uncertainty = _core.ArmUncertainty(fit.friction, factor_of(fitter, fit, blocks, known, law=law))
+    return solver_of(found, fit, file), uncertainty
+
+
+def solver_of(found: Identification, model: Any, file: Path) -> Solver:
+    """Of the arm of an identification with the links, rotors and friction of a model, written to the file."""
+    changed = replace(
         found.model,
-        parameters=fit.parameters,
-        rotor_inertia=fit.rotor_inertia,
-        friction=tuple(fit.friction),
+        parameters=model.parameters,
+        rotor_inertia=model.rotor_inertia,
+        friction=tuple(model.friction),
     )
-    file = directory / f"{robot.name}_{k}.yaml"
-    file.write_text(model_file_text(replace(found, model=model), file.stem))
-    return Solver(RIGID_BODY, model=str(file)), _core.ArmUncertainty(fit.friction, factor)
+    file.write_text(model_file_text(replace(found, model=changed), file.stem))
+    return Solver(RIGID_BODY, model=str(file))
 
 
 def part(samples: Samples, which: slice | Mask) -> Samples:
