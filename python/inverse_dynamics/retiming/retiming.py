@@ -79,7 +79,8 @@ class Retimed(ResultDirectory):
     q: Floats  # (N, n) rad
     qd: Floats  # (N, n) rad/s
     qdd: Floats  # (N, n) rad/s^2
-    efforts: Floats  # (N, n) N m
+    efforts: Floats  # (N, n) N m; friction with what it remembers of the motion
+    greatest: Floats  # (N, n) N m, efforts of the greatest size, whatever the motion before was
     band: Floats  # (n,) N m, half the width that --margin keeps free
     timed: TimedPath  # the motion on its grid
     speed_limit: Floats  # (K,) of the grid: ds/dt that limits allow for an instant
@@ -101,8 +102,8 @@ class Retimed(ResultDirectory):
 
     @property
     def use(self) -> Floats:
-        """(N, n) torque over what it may be, signed."""
-        used: Floats = self.efforts / np.maximum(self.torque_limit - self.band, _LEAST)
+        """(N, n) greatest torque over what it may be, signed."""
+        used: Floats = self.greatest / np.maximum(self.torque_limit - self.band, _LEAST)
         return used
 
     @property
@@ -233,7 +234,7 @@ def retime(
         timed = _slowed(arm, timed, duration, limits, options)
     time = sample_times(timed.duration, rate)
     q, qd, qdd = timed.states(time)
-    efforts = arm.solver.torques(q, qd, qdd)
+    efforts = arm.solver.torques(q, qd, qdd) + arm.solver.friction_state().along(q, qd)
     return Retimed(
         robot=robot,
         joint_names=arm.recorded_names,
@@ -244,6 +245,7 @@ def retime(
         qd=qd,
         qdd=qdd,
         efforts=efforts,
+        greatest=_greatest(arm.solver, q, qd, qdd),
         band=torque_band(arm.solver, options.margin),
         timed=timed,
         speed_limit=speed_limit(arm.solver, timed, limits, options),
@@ -326,12 +328,20 @@ def _dense(timed: TimedPath) -> Floats:
     return np.sort(np.append(timed.time, (timed.time[1:] + timed.time[:-1]) / 2))
 
 
+def _greatest(solver: Solver, q: Floats, qd: Floats, qdd: Floats) -> Floats:
+    """(N, n) N m, signed: of the torques that friction's memory of the motion before allows, the greatest in size."""
+    torques = solver.torques(q, qd, qdd)
+    least, most = (torques + by for by in solver.friction_state().range_along(q, qd))
+    greatest: Floats = np.where(most > -least, most, least)
+    return greatest
+
+
 def _use(
     solver: Solver, limits: MotionLimits, band: Floats, states: tuple[Floats, Floats, Floats]
 ) -> Floats:
-    """(N, n) sizes of torques over what they may be."""
+    """(N, n) greatest sizes of torques over what they may be."""
     room = np.maximum(torque_limit(limits, states[1]) - band, _LEAST)
-    use: Floats = np.abs(solver.torques(*states)) / room
+    use: Floats = np.abs(_greatest(solver, *states)) / room
     return use
 
 
