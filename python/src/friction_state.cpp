@@ -2,6 +2,7 @@
 #include <chain_dynamics/friction_state.hpp>
 #include <inverse_dynamics_solver/friction_memory.hpp>
 
+#include "annotations.hpp"
 #include "arrays.hpp"
 #include "solver_class.hpp"
 
@@ -39,6 +40,20 @@ Array along(State& of, const Array& q, const Array& qd) {
   return result;
 }
 
+TwoFloats rangeAlong(State& of, const Array& q, const Array& qd) {
+  const py::ssize_t count = q.ndim() == 2 ? q.shape(0) : 0;
+  requireShape("q", q, {count, of.joints});
+  requireShape("qd", qd, {count, of.joints});
+  Array both[] = {like(q), like(q)};
+  Map least = columns(both[0]), most = columns(both[1]);
+  least.setZero(), most.setZero();
+  for (py::ssize_t k = 0; k < count; ++k) {
+    of.state.move(states(q, "q").col(k));
+    of.state.addRange(states(qd, "qd").col(k), least.col(k), most.col(k));
+  }
+  return {Floats(both[0]), Floats(both[1])};
+}
+
 Array unknown(const State& of) {
   Eigen::VectorXd half_width = Eigen::VectorXd::Zero(of.joints);
   of.state.addUnknown(half_width);
@@ -64,6 +79,10 @@ void bindFrictionState(py::module_& module, py::class_<Solver>& solver) {
       .def("along", &along, "q"_a, "qd"_a,
            "(N, n) N m (prismatic N) to be added to friction or torques of N states (N, n) in the\n"
            "order of time: move() and torques() of each.")
+      .def("range_along", &rangeAlong, "q"_a, "qd"_a,
+           "The least and the greatest that along() would give, (N, n) each, whatever the motion "
+           "before\n"
+           "the first state was.")
       .def_property_readonly("unknown", &unknown,
                              "(n,) N m (prismatic N): half the width of what isn't known.");
   solver.def(

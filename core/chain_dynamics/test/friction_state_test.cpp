@@ -134,6 +134,30 @@ TEST(FrictionState, StartsAnywhereWithinItsBand) {
   }
 }
 
+TEST(FrictionState, RangeEndsAtTheFrictionOfJointsThatCameFromOneSide) {
+  constexpr double kFar = 40 * kDistance;
+  Model coupled = model(2);
+  coupled.coupling = (Eigen::MatrixXd(2, 2) << 1, 0, -1, 1).finished();
+  const Eigen::Vector2d start(0.1, 0.2), qd(0.05, -0.1);
+  FrictionState unknown(coupled);
+  // Of the first joint both motors matter: the one that turns with it, and the one that turns against it.
+  FrictionState least(coupled), most(coupled);
+  least.move(start + Eigen::Vector2d(kFar, 0));
+  most.move(start - Eigen::Vector2d(kFar, 0));
+  for (const double by : {0.0, 0.01, -0.02, 0.005}) {
+    const Eigen::Vector2d q = start + by * Eigen::Vector2d(1, 3);
+    VectorXd low = VectorXd::Zero(2), high = low, from_above = low, from_below = low;
+    for (FrictionState* const state : {&unknown, &least, &most}) state->move(q);
+    unknown.addRange(qd, low, high);
+    least.addTo(qd, from_above);
+    most.addTo(qd, from_below);
+    EXPECT_NEAR(low[0], from_above[0], kRounding) << by;
+    EXPECT_NEAR(high[0], from_below[0], kRounding) << by;
+    EXPECT_LE(low[1], std::min(from_above[1], from_below[1]) + kRounding) << by;
+    EXPECT_GE(high[1], std::max(from_above[1], from_below[1]) - kRounding) << by;
+  }
+}
+
 TEST(FrictionState, WholeTurnsOfContinuousJointsAreNoMotion) {
   FrictionState turned(model(1, JointType::kContinuous)), plain(model());
   for (const double q : {0.0, 0.02, 0.05}) {

@@ -97,12 +97,12 @@ chain_dynamics::OwnedVector torqueBand(const InverseDynamicsSolver& solver, doub
 }  // namespace v2
 
 PathDynamics::PathDynamics(const InverseDynamicsSolver& solver, const Path& path, const VectorXd& s,
-                           const MotionLimits& limits, double margin)
+                           const MotionLimits& limits, double margin, FrictionState friction)
     : solver_(solver), limits_(limits), s_(s), band_(torqueBand(solver, margin)) {
   const Index n = path.jointCount(), count = s.size();
   const bool accelerations = limits.acceleration.size() > 0;
   const Index rows = accelerations ? 2 * n : n;
-  q_.resize(n, count), dq_.resize(n, count), g_.resize(n, count), at_rest_.resize(n, count);
+  q_.resize(n, count), dq_.resize(n, count), g_.resize(n, count), least_still_.resize(n, count);
   a_.resize(rows, count), b_.resize(rows, count);
   MatrixXd ddq(n, count);
   for (Index k = 0; k < count; ++k) {
@@ -113,14 +113,20 @@ PathDynamics::PathDynamics(const InverseDynamicsSolver& solver, const Path& path
   const MatrixXd still = MatrixXd::Zero(n, count);
   MatrixXd part(n, count);
   solver.getGravityVectorBatch(q_, g_);
-  solver.getFrictionVectorBatch(q_, still, at_rest_);
+  solver.getFrictionVectorBatch(q_, still, least_still_);
   solver.getTorquesBatch(q_, still, dq_, part);
-  a_.topRows(n) = part - g_ - at_rest_;
+  a_.topRows(n) = part - g_ - least_still_;
   solver.getTorquesBatch(q_, dq_, ddq, part);
   b_.topRows(n) = part - g_;
   solver.getFrictionVectorBatch(q_, dq_, part);
   b_.topRows(n) -= part;
   if (accelerations) a_.bottomRows(n) = dq_, b_.bottomRows(n) = ddq;
+  most_still_ = least_still_;
+  for (Index k = 0; k < count && friction.remembers(); ++k) {
+    friction.move(q_.col(k));
+    friction.addRange(still.col(k), least_still_.col(k), most_still_.col(k));
+    friction_.push_back(friction);
+  }
 
   cap_ = std::isfinite(limits.tip_speed) ? capOfTips(solver, q_, dq_, limits.tip_speed)
                                          : VectorXd::Constant(count, kInfinity);
@@ -143,21 +149,23 @@ void PathDynamics::room(Index k, double z, Room& room) const {
   room.k = k, room.z = z;
   // The second state is beside the first one, for the slopes. Steps this small are exact to 1e-8.
   const double step = 1e-5 * z;
-  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 64, 2> qd(n, 2), f(n, 2);
+  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 64, 2> qd(n, 2), least(n, 2), most(n, 2);
   qd.col(0) = std::sqrt(z) * dq_.col(k);
   qd.col(1) = std::sqrt(z + step) * dq_.col(k);
-  f.colwise() = at_rest_.col(k);
+  least.colwise() = least_still_.col(k), most.colwise() = most_still_.col(k);
   for (Index i = 0; i < 2 && z > 0.0; ++i) {
-    solver_.getFrictionVector(q_.col(k), qd.col(i), f.col(i));
+    solver_.getFrictionVector(q_.col(k), qd.col(i), least.col(i));
+    most.col(i) = least.col(i);
+    if (friction_.empty()) continue;
+    friction_[static_cast<std::size_t>(k)].addRange(qd.col(i), least.col(i), most.col(i));
   }
   for (Index j = 0; j < n; ++j) {
     const double limit = torqueLimit(limits_, band_, j, qd(j, 0));
     const double slope = step > 0 ? (torqueLimit(limits_, band_, j, qd(j, 1)) - limit) / step : 0.0;
-    const double friction_slope = step > 0 ? (f(j, 1) - f(j, 0)) / step : 0.0;
-    room.up_slope[j] = slope - friction_slope;
-    room.down_slope[j] = slope + friction_slope;
-    room.up[j] = limit - g_(j, k) - f(j, 0) - room.up_slope[j] * z;
-    room.down[j] = limit + g_(j, k) + f(j, 0) - room.down_slope[j] * z;
+    room.up_slope[j] = step > 0 ? slope - (most(j, 1) - most(j, 0)) / step : slope;
+    room.down_slope[j] = step > 0 ? slope + (least(j, 1) - least(j, 0)) / step : slope;
+    room.up[j] = limit - g_(j, k) - most(j, 0) - room.up_slope[j] * z;
+    room.down[j] = limit + g_(j, k) + least(j, 0) - room.down_slope[j] * z;
   }
   if (rows() > n) {
     room.up.tail(n) = room.down.tail(n) = limits_.acceleration;
@@ -170,7 +178,8 @@ Index PathDynamics::weakest(Index k, double& missing) const {
   double worst = 0.0;
   for (Index j = 0; j < g_.rows(); ++j) {
     const double limit = torqueLimit(limits_, band_, j, 0.0);
-    const double lacks = std::abs(g_(j, k) + at_rest_(j, k)) - limit;
+    const double lacks =
+        std::max(g_(j, k) + most_still_(j, k), -g_(j, k) - least_still_(j, k)) - limit;
     if (lacks > worst * limits_.torque[j])
       worst = lacks / limits_.torque[j], joint = j, missing = lacks;
   }
@@ -179,7 +188,7 @@ Index PathDynamics::weakest(Index k, double& missing) const {
 
 VectorXd excess(const InverseDynamicsSolver& solver, const Path& path,
                 const Eigen::Ref<const VectorXd>& s, const Eigen::Ref<const VectorXd>& z,
-                const MotionLimits& limits, double margin, bool at_ends) {
+                const MotionLimits& limits, double margin, bool at_ends, FrictionState& friction) {
   struct Place {
     Index k;
     double share;
@@ -194,13 +203,14 @@ VectorXd excess(const InverseDynamicsSolver& solver, const Path& path,
     const auto here = ends.col(k % 2);
     auto next = ends.col((k + 1) % 2);
     path.evaluate(s[k + 1], position, next, bend, k + 2 == points);
+    if (at_ends) places.push_back({k, 0.0});
     for (const double share : between(here, next, z[k] == 0.0 || z[k + 1] == 0.0)) {
       places.push_back({k, share});
     }
-    if (at_ends) places.push_back({k, 0.0}), places.push_back({k, 1.0});
+    if (at_ends) places.push_back({k, 1.0});
   }
   const auto count = static_cast<Index>(places.size());
-  MatrixXd q(n, count), qd(n, count), qdd(n, count), tau(n, count);
+  MatrixXd q(n, count), qd(n, count), qdd(n, count), least(n, count);
   for (Index i = 0; i < count; ++i) {
     const auto [k, share] = places[static_cast<std::size_t>(i)];
     const double length = s[k + 1] - s[k], here = z[k] + share * (z[k + 1] - z[k]);
@@ -208,13 +218,16 @@ VectorXd excess(const InverseDynamicsSolver& solver, const Path& path,
     qdd.col(i) = (z[k + 1] - z[k]) / (2 * length) * qd.col(i) + here * qdd.col(i);
     qd.col(i) *= std::sqrt(here);
   }
-  solver.getTorquesBatch(q, qd, qdd, tau);
+  solver.getTorquesBatch(q, qd, qdd, least);
+  MatrixXd greatest = least;
   std::vector<const ids::Kinematics*> tips;
   if (std::isfinite(limits.tip_speed)) tips = tipsOf(solver);
   MatrixXd J(6, n);
   const VectorXd band = torqueBand(solver, margin);
   VectorXd most = VectorXd::Zero(points - 1);
   for (Index i = 0; i < count; ++i) {
+    friction.move(q.col(i));
+    friction.addRange(qd.col(i), least.col(i), greatest.col(i));
     double& worst = most[places[static_cast<std::size_t>(i)].k];
     const auto look = [&worst](const auto& values, const chain_dynamics::OwnedVector& limit) {
       if (limit.size() == 0) return;
@@ -228,7 +241,7 @@ VectorXd excess(const InverseDynamicsSolver& solver, const Path& path,
     }
     for (Index j = 0; j < n; ++j) {
       const double limit = torqueLimit(limits, band, j, qd(j, i));
-      worst = std::max(worst, (std::abs(tau(j, i)) - limit) / limits.torque[j]);
+      worst = std::max(worst, (std::max(greatest(j, i), -least(j, i)) - limit) / limits.torque[j]);
     }
   }
   return most;

@@ -4,12 +4,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chain_dynamics/friction_state.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <vector>
 
 #include "inverse_dynamics_timing/retime.hpp"
 
 namespace inverse_dynamics_timing {
 
+using chain_dynamics::FrictionState;
 using inverse_dynamics_solver::InverseDynamicsSolver;
 
 /// Limits of each row about a squared speed: `a u + b z <= up + up_slope z`, `-(a u + b z) <= down +
@@ -23,9 +26,10 @@ struct Room {
 /// Rows are the joints' torques, and below them, where they are limited, the joints' accelerations.
 class PathDynamics {
  public:
-  /// @param s  points between two stops, rising; the last is that before a stop.
+  /// @param s         points between two stops, rising; the last is that before a stop.
+  /// @param friction  what it remembers of the path before them.
   PathDynamics(const InverseDynamicsSolver& solver, const Path& path, const Eigen::VectorXd& s,
-               const MotionLimits& limits, double margin);
+               const MotionLimits& limits, double margin, FrictionState friction);
 
   Eigen::Index points() const { return s_.size(); }
   Eigen::Index rows() const { return a_.rows(); }
@@ -48,19 +52,21 @@ class PathDynamics {
   Eigen::VectorXd s_, band_, cap_;
   Eigen::MatrixXd q_, dq_;
   Eigen::MatrixXd a_, b_, g_;
-  Eigen::MatrixXd at_rest_;  // friction, n x N
+  std::vector<FrictionState> friction_;       // at each point; empty: it remembers nothing
+  Eigen::MatrixXd least_still_, most_still_;  // friction at rest, n x N
 };
 
 /// Greatest excess over a limit within each interval between the points s, as a share of it, with squared
 /// speeds z at the points: in its middle; at three places where the path bends; at seven, towards the
 /// ends, where a joint turns back or the robot starts or stops, and friction steps.
 ///
-/// @param s        as of PathDynamics.
-/// @param at_ends  look at the ends too: of a motion that wasn't found on this grid.
+/// @param s                 as of PathDynamics.
+/// @param at_ends           look at the ends too: of a motion that wasn't found on this grid.
+/// @param[in,out] friction  what it remembers of the path so far.
 Eigen::VectorXd excess(const InverseDynamicsSolver& solver, const Path& path,
                        const Eigen::Ref<const Eigen::VectorXd>& s,
                        const Eigen::Ref<const Eigen::VectorXd>& z, const MotionLimits& limits,
-                       double margin, bool at_ends = false);
+                       double margin, bool at_ends, FrictionState& friction);
 
 /// Throws unless limits and options can be used [retime.hpp].
 void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <limits>
 #include <string>
 #include <utility>
@@ -123,6 +124,7 @@ double overload(const InverseDynamicsSolver& solver, const Trajectory& motion,
   constexpr Index kAtOnce = 500;  // points, which fit into a cache
   double worst = 0.0;
   const VectorXd grid = motion.s(), z = motion.speed().array().square();
+  FrictionState friction = frictionState(solver);
   Index first = 0, at = 0;
   for (Index k = 1; k <= grid.size(); ++k) {
     const bool stops = k == grid.size() || grid[k] == grid[k - 1];
@@ -130,7 +132,7 @@ double overload(const InverseDynamicsSolver& solver, const Trajectory& motion,
     const Index count = k - first + (stops ? 0 : 1);
     if (count > 1) {
       const double over = excess(solver, motion.path(), grid.segment(first, count),
-                                 z.segment(first, count), limits, margin, true)
+                                 z.segment(first, count), limits, margin, true, friction)
                               .maxCoeff(&at);
       if (over > worst) worst = over, s = grid[first + at];
     }
@@ -192,6 +194,7 @@ Retimed withJumps(const InverseDynamicsSolver& solver, const Path& path, const M
   const std::vector<Index> knots = borders(path);
   const std::vector<double> turns = path.turningPoints();
   std::vector<double> s, speed;
+  FrictionState before = frictionState(solver), after;  // a section
   for (std::size_t section = 0; section + 1 < knots.size(); ++section) {
     const bool first = section == 0, last = section + 2 == knots.size();
     const double start = first ? options.start_speed : 0.0, end = last ? options.end_speed : 0.0;
@@ -199,11 +202,12 @@ Retimed withJumps(const InverseDynamicsSolver& solver, const Path& path, const M
     VectorXd finer, z;
     const Index most = kMostFiner * grid.size();
     for (int round = 0, refused = 0;; ++round) {
-      const PathDynamics dynamics(solver, path, grid, limits, options.margin);
+      const PathDynamics dynamics(solver, path, grid, limits, options.margin, before);
       PhasePlane plane(dynamics);
       if (plane.solve(start * start, end * end)) {
         z = plane.z();
-        finer = refined(grid, excess(solver, path, grid, z, limits, options.margin));
+        after = before;
+        finer = refined(grid, excess(solver, path, grid, z, limits, options.margin, false, after));
         if (finer.size() == 0 || finer.size() > most || round == kRefinements) break;
       } else {
         // Intervals that are too coarse may leave no way where finer ones do.
@@ -214,6 +218,7 @@ Retimed withJumps(const InverseDynamicsSolver& solver, const Path& path, const M
       }
       grid = finer;
     }
+    before = after;
     s.insert(s.end(), grid.begin(), grid.end());
     for (const double squared : z) speed.push_back(std::sqrt(squared));
   }
@@ -284,7 +289,8 @@ chain_dynamics::OwnedVector speedLimit(const InverseDynamicsSolver& solver,
                                        const RetimeOptions& options) {
   check(solver, trajectory.path(), limits, options);
   const VectorXd s = trajectory.s();
-  const PathDynamics dynamics(solver, trajectory.path(), s, limits, options.margin);
+  const PathDynamics dynamics(solver, trajectory.path(), s, limits, options.margin,
+                              frictionState(solver));
   PhasePlane plane(dynamics);
   chain_dynamics::OwnedVector limit(s.size());
   for (Index k = 0; k < s.size(); ++k) limit[k] = std::sqrt(plane.greatest(k));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <vector>
 
@@ -141,14 +142,21 @@ Change fastestChange(const InverseDynamicsSolver& solver, const Trajectory& moti
                      const MotionLimits& limits) {
   const States states(motion);
   const Index n = states.q.rows(), jerks = limits.jerk.size(), rates = limits.torque_rate.size();
-  MatrixXd values(jerks + rates, states.q.cols());  // over their limits
+  MatrixXd values(jerks + 2 * rates, states.q.cols());  // over their limits
   if (jerks > 0) {
     values.topRows(n) = states.qdd.array().colwise() / limits.jerk.array();
   }
   if (rates > 0) {
-    MatrixXd tau(n, states.q.cols());
-    solver.getTorquesBatch(states.q, states.qd, states.qdd, tau);
-    values.bottomRows(n) = tau.array().colwise() / limits.torque_rate.array();
+    MatrixXd least(n, states.q.cols());
+    solver.getTorquesBatch(states.q, states.qd, states.qdd, least);
+    MatrixXd most = least;
+    chain_dynamics::FrictionState friction = frictionState(solver);
+    for (Index k = 0; k < least.cols(); ++k) {
+      friction.move(states.q.col(k));
+      friction.addRange(states.qd.col(k), least.col(k), most.col(k));
+    }
+    values.middleRows(jerks, n) = least.array().colwise() / limits.torque_rate.array();
+    values.bottomRows(n) = most.array().colwise() / limits.torque_rate.array();
   }
   Change fastest;
   const auto count = static_cast<Index>(states.intervals.size());
@@ -165,7 +173,8 @@ Change fastestChange(const InverseDynamicsSolver& solver, const Trajectory& moti
       const auto before = values.col(states.at(i - 1, part)), here = values.col(states.at(i, part));
       Index row = 0;
       const double share = (here - before).cwiseAbs().maxCoeff(&row) * per_second;
-      if (share > fastest.share) fastest = {share, motion.s()[k], row < jerks ? -1 : row - jerks};
+      if (share > fastest.share)
+        fastest = {share, motion.s()[k], row < jerks ? -1 : (row - jerks) % n};
     }
   }
   return fastest;

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <functional>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/kinematics.hpp>
 #include <iterator>
@@ -96,7 +97,7 @@ VectorXd pandaTorques() { return (VectorXd(7) << 87, 87, 87, 87, 12, 12, 12).fin
 
 /// The greatest of `used / limit` of the torques, ten times finer than the grid.
 double greatestUse(const InverseDynamicsSolver& solver, const Trajectory& motion,
-                   const VectorXd& torque) {
+                   const VectorXd& torque, chain_dynamics::FrictionState friction = {}) {
   const Index n = torque.size();
   VectorXd q(n), qd(n), qdd(n);
   double most = 0.0;
@@ -104,7 +105,9 @@ double greatestUse(const InverseDynamicsSolver& solver, const Trajectory& motion
     for (int i = 0; i < 10; ++i) {
       const double interval = motion.time()[k + 1] - motion.time()[k];
       motion.evaluate(motion.time()[k] + interval * (i + 0.5) / 10, q, qd, qdd);
-      const VectorXd tau = solver.getTorques(q, qd, qdd);
+      VectorXd tau = solver.getTorques(q, qd, qdd);
+      friction.move(q);
+      friction.addTo(qd, tau);
       most = std::max(most, (tau.cwiseAbs().array() / torque.array()).maxCoeff());
     }
   }
@@ -281,6 +284,25 @@ TEST(Retime, TorquesStayWithinLimitsOnPathsOfManyWaypoints) {
         ASSERT_TRUE(fastest) << text(fastest.refusal, solver->jointNames());
         EXPECT_LT(greatestUse(*solver, fastest.trajectory, limits.torque), 1 + kWithFriction)
             << "law " << law.index() << ", seed " << seed;
+      }
+    }
+  }
+}
+
+// A joint that came from afar to where the motion starts has all of its friction on one side.
+TEST(Retime, TorquesStayWithinLimitsWhateverFrictionRemembers) {
+  constexpr double kFar = 20.0, kWithFriction = 0.002;  // rad; share of the limit
+  const auto solver = identified("ur10_salerno_identified.yaml");
+  MotionLimits limits;
+  limits.torque = 0.6 * ur10Torques();
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const MatrixXd points = randomWaypoints(6, seed);
+    for (const Path& path : {Path::spline(points), Path::lines(points, 0.0)}) {
+      const Trajectory motion = retime(*solver, path, limits).trajectory;
+      for (const double from : {-kFar, kFar}) {
+        chain_dynamics::FrictionState friction = frictionState(*solver);
+        friction.move((points.col(0).array() + from).matrix());
+        EXPECT_LT(greatestUse(*solver, motion, limits.torque, friction), 1 + kWithFriction) << seed;
       }
     }
   }

@@ -36,7 +36,8 @@ def retime_page(result: Retimed) -> str:
     if (other := result.by_acceleration) is not None:
         time = sample_times(other.duration, min(RATE, MOST_DRAWN / other.duration))
         states = other.states(time)
-        motions.append((_OTHER, time, states[0], arm.solver.torques(*states)))
+        remembered = arm.solver.friction_state().along(*states[:2])
+        motions.append((_OTHER, time, states[0], arm.solver.torques(*states) + remembered))
     plots = [
         _speed_plot(result),
         *(_torque_plot(result, j, motions) for j in range(len(arm.units))),

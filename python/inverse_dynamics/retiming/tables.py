@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 def retime_numbers(result: Retimed) -> dict[str, Any]:
     """Durations, limits and loads, for JSON."""
-    peak = np.abs(result.efforts).argmax(axis=0)
+    peak = np.abs(result.greatest).argmax(axis=0)
     columns = {
         "limit": result.limits.torque,
         "band": result.band,
-        "peak": np.take_along_axis(result.efforts, peak[None], axis=0)[0],
+        "peak": np.take_along_axis(result.greatest, peak[None], axis=0)[0],
         "peak_time": result.time[peak],
         "peak_velocity": np.abs(result.qd).max(axis=0),
         "at_limit": result.at_limit,
@@ -60,7 +60,7 @@ def retime_lines(result: Retimed) -> list[Line]:
 def retime_table(result: Retimed) -> ReportTable:
     """Of each joint: its greatest torque and velocity, and how long it is at its torque limit."""
     columns = {
-        "peak": np.abs(result.efforts).max(axis=0),
+        "peak": np.abs(result.greatest).max(axis=0),
         "limit": result.limits.torque,
         "at limit [% of time]": 100 * result.at_limit,
         "velocity [rad/s, m/s]": np.abs(result.qd).max(axis=0),

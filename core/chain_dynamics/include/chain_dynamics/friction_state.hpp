@@ -29,6 +29,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "chain_dynamics/chain.hpp"
@@ -79,7 +80,7 @@ class FrictionState {
   explicit FrictionState(const Model& model);
 
   /// Whether any law has a distance; where none has, the functions below do nothing.
-  bool remembers() const noexcept { return !laws_.empty(); }
+  bool remembers() const noexcept { return laws_ != nullptr; }
 
   /// Forgets the motion so far.
   void reset() noexcept;
@@ -101,26 +102,34 @@ class FrictionState {
   /// move() and addTo() of N states in the order of time.
   void addAlong(const ConstStates& q, const ConstStates& qd, const States& f) noexcept;
 
+  /// Adds the least and the greatest that addTo() would add, whatever the motion before was.
+  ///
+  /// @param qd                  as of addTo().
+  /// @param[in,out] least,most  n each; frictionVector(), or torques that contain it; N m (prismatic N).
+  void addRange(const Eigen::Ref<const Eigen::VectorXd>& qd, Eigen::Ref<Eigen::VectorXd> least,
+                Eigen::Ref<Eigen::VectorXd> most) const noexcept;
+
   /// Adds half the width of what isn't known: `|C|' (fm + fs) u`.
   ///
   /// @param[in,out] half_width  n; N m (prismatic N).
   void addUnknown(Eigen::Ref<Eigen::VectorXd> half_width) const noexcept;
 
  private:
-  struct Remembered {
-    SmoothCoulomb law;  // distance 0: remembers nothing
-    Presliding<double> memory;
+  struct Laws {
+    std::vector<SmoothCoulomb> each;  // distance 0: remembers nothing
+    OwnedMatrix coupling;             // empty: law j is that of joint j
+    std::vector<JointType> types;
   };
 
   template <class At>
   void advance(const At& q) noexcept;
   template <class At, class Add>
   void add(const At& qd, const Add& add) const noexcept;
-  double coefficient(std::size_t law, Eigen::Index joint) const noexcept;
+  template <class Action>
+  void forEachJoint(std::size_t law, const Action& action) const noexcept;
 
-  std::vector<Remembered> laws_;
-  OwnedMatrix coupling_;  // empty: law j is that of joint j
-  std::vector<JointType> types_;
+  std::shared_ptr<const Laws> laws_;  // shared by copies; none: nothing is remembered
+  std::vector<Presliding<double>> memory_;
   std::vector<double> last_;  // positions; NaN: none yet
 };
 
