@@ -197,7 +197,7 @@ class Rounds {
   }
 
  private:
-  static constexpr double kGain = 1e-1;    // of the cost, that is worth another pass
+  static constexpr double kGain = 0.3;     // of the cost, that is worth another pass
   static constexpr int kMostRejected = 3;  // steps in turn
   static constexpr double kFirstStep = 0.3, kLongestStep = 0.6;  // units
   static constexpr double kStopped = 1e-3;                       // of a unit

@@ -230,7 +230,7 @@ def _delay(
         return fitter.fit(data_of(fitter, samples), options, start)
 
     for _ in range(_MOST_DELAY_STEPS):
-        start = at(center, settled, start)
+        start = at(center, near if vertices else settled, start)
         fits = [at(center - step, near, start), start, at(center + step, near, start)]
         # samples at the ends of blocks are fewer where the delay is greater
         costs = [2 * float(np.log(fit.noise).sum()) for fit in fits]
