@@ -264,7 +264,6 @@ void bindIdentification(py::module_& module) {
               Field{"law", &O::terms, "of friction: step, load, stribeck, memory"},
               Field{"prior_strength", &O::prior_strength, "of the description's links"},
               Field{"most_passes", &O::most_passes, "over the samples"},
-              Field{"without", &O::without, "number of a block that is left out"},
               Field{"shift", &O::shift, "whether the step of friction may be off zero velocity"},
               Field{"drive_gains", &O::drive_gains,
                     "(n,) N m/A, about: tau are currents [A], and the gains are fitted"});
@@ -336,6 +335,13 @@ void bindIdentification(py::module_& module) {
           },
           py::call_guard<py::gil_scoped_release>(), "data"_a, "options"_a, "start"_a = py::none(),
           "A fit to the samples of all blocks. start: another one to begin with.")
+      .def(
+          "left_out",
+          [](const ArmFitter& f, const ArmFit& fit, const HeldData& held,
+             const ArmFitOptions& options) { return f.leftOut(fit, held.data, options); },
+          py::call_guard<py::gil_scoped_release>(), "fit"_a, "data"_a, "options"_a,
+          "Of each block, a fit to the others: one Gauss-Newton step from a fit to all blocks.\n"
+          "options: those of the fit; the strength of the prior may be another.")
       .def("torques", &torques, "fit"_a, "q"_a, "qd"_a, "qdd"_a, "before"_a = py::none(),
            "Torques of a fit, friction included: (n,) or (N, n) in the order of time.\n"
            "before: (K, n) positions before, as in data().")

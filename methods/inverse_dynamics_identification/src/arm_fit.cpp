@@ -11,10 +11,12 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "curved_unknowns.hpp"
 #include "friction_columns.hpp"
 #include "own_rows.hpp"
 
@@ -31,95 +33,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kSettledStep = 0.02;  // Gauss-Newton step, relative to the width, that ends it
-constexpr double kSettledGain = 1e-3;  // the same, of the logarithm of a drive gain
 constexpr int kNoiseIterations = 4;
-constexpr double kHeld = 1e-6;  // deviation of a shift at zero, by the greatest velocity
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// An unknown of a joint that torques aren't linear in: a fit takes Gauss-Newton steps of it, or of its
-/// logarithm.
-struct Curved {
-  Index column;                 // of the derivative
-  double StepFriction::*value;  // null: the drive gain
-  bool is_logarithm;
-  double center, deviation;  // what it is drawn to
-  double least, most;
-  double settled = kSettledStep;
-
-  double of(const ArmFit& fit, Index j) const {
-    return value != nullptr ? fit.friction[static_cast<std::size_t>(j)].*value : fit.drive_gains[j];
-  }
-  double distance(const ArmFit& fit, Index j) const {
-    return is_logarithm ? std::log(of(fit, j) / center) : of(fit, j) - center;
-  }
-  /// Length of the longest step: the width of friction, or a factor e.
-  double unit(const ArmFit& fit, Index j) const {
-    return is_logarithm ? 1.0 : fit.friction[static_cast<std::size_t>(j)].width;
-  }
-  double moved(const ArmFit& fit, Index j, double by) const {
-    const double longest = unit(fit, j), step = std::clamp(by, -longest, longest);
-    return std::clamp(is_logarithm ? of(fit, j) * std::exp(step) : of(fit, j) + step, least, most);
-  }
-};
-
-/// How far and how fast what has friction moves: by the coupling, or joints.
-class Reach {
- public:
-  explicit Reach(Index laws)
-      : greatest_(VectorXd::Zero(laws)),
-        lower_(VectorXd::Constant(laws, kInfinity)),
-        upper_(-lower_) {}
-
-  void add(const ArmSamples& samples, const OwnedMatrix& coupling) {
-    for (Index k = 0; k < samples.qd.count; ++k) {
-      for (Index j = 0; j < laws(); ++j) {
-        const double v = atLaw(coupling, j, [&](Index i) { return samples.qd(i, k); });
-        const double q = atLaw(coupling, j, [&](Index i) { return samples.q(i, k); });
-        greatest_[j] = std::max(greatest_[j], std::abs(v));
-        lower_[j] = std::min(lower_[j], q);
-        upper_[j] = std::max(upper_[j], q);
-      }
-    }
-  }
-
-  Index laws() const { return greatest_.size(); }
-  /// The greatest velocity.
-  double velocity(Index j) const { return std::max(greatest_[j], kLeast); }
-  /// From the least to the greatest position.
-  double range(Index j) const { return std::max(upper_[j] - lower_[j], kLeast); }
-
- private:
-  static constexpr double kLeast = 1e-6;  // of a joint that stands still
-  VectorXd greatest_, lower_, upper_;
-};
-
-/// The curved unknowns of a law and, if it is a joint's, of its drive gain.
-std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index law, const Reach& reach) {
-  using namespace own_column;
-  const FrictionPrior& prior = options.friction;
-  const double greatest = reach.velocity(law), range = reach.range(law);
-  const double factor = std::log(prior.width_factor);
-  const double shift = (options.shift ? prior.shift : kHeld) * greatest;
-  const double most_shift = options.shift ? prior.most_shift * greatest : 0.0;
-  std::vector<Curved> curved = {
-      {kShift, &StepFriction::shift, false, 0, shift, -most_shift, most_shift},
-      {kWidth, &StepFriction::width, true, prior.width * greatest, factor,
-       prior.least_width * greatest, prior.most_width * greatest}};
-  if (options.terms >= FrictionTerms::kStribeck) {
-    curved.push_back({kStribeckVelocity, &StepFriction::vs, true,
-                      prior.stribeck_velocity * greatest, factor, 0, greatest});
-  }
-  if (options.terms >= FrictionTerms::kMemory) {
-    curved.push_back({kDistance, &StepFriction::distance, true, prior.distance * range, factor,
-                      prior.least_distance * range, prior.most_distance * range});
-  }
-  if (options.drive_gains.size() > law) {
-    curved.push_back({ownColumns(options.terms), nullptr, true, options.drive_gains[law],
-                      std::log(kDriveGainFactor), 0, kInfinity, kSettledGain});
-  }
-  return curved;
-}
+constexpr int kNoiseIterationsOfStep = 2;  // from nearly the same noise
 
 /// Prior of the coefficient of a column that torques are linear in.
 OwnColumn linearColumn(Index column, const FrictionPrior& prior) {
@@ -184,14 +99,16 @@ class Rounds {
         rows_(rows),
         options_(options),
         has_gains_(options.drive_gains.size() > 0),
-        reach_(std::move(reach)) {
+        reach_(std::move(reach)),
+        longest_(VectorXd::Constant(rows.laws(), kFirstStep)) {
     for (Index j = 0; j < laws(); ++j) {
       curved_.push_back(curvedUnknowns(options, j, reach_));
     }
   }
 
-  /// Prior of all unknowns at a fit, or of those that it is linear in.
-  Prior prior(const ArmFit& fit, bool linear) const {
+  /// Prior of all unknowns at a fit, or of those that it is linear in. held: steps of curved unknowns and
+  /// laws; NaN: it isn't held.
+  Prior prior(const ArmFit& fit, bool linear, const MatrixXd& held = {}) const {
     Prior prior;
     for (const LinkPrior& link : links_) prior.links.push_back(link.link);
     if (linear) prior.columns = linearOnes();
@@ -203,10 +120,15 @@ class Rounds {
         for (const Index c : linearColumns(options_.terms)) {
           all[at(first + c)] = linearColumn(c, options_.friction);
         }
+        Index i = 0;
         for (const Curved& unknown : curvedOf(k)) {
+          const double step = held.size() > 0 ? held(i, k) : std::nan("");
+          ++i;
           if (unknown.value == nullptr && k != j) continue;
-          all[at(first + unknown.column)] = {false, kInfinity, -unknown.distance(fit, k),
-                                             unknown.deviation};
+          all[at(first + unknown.column)] =
+              std::isnan(step)
+                  ? OwnColumn{false, kInfinity, -unknown.distance(fit, k), unknown.deviation}
+                  : OwnColumn{false, kInfinity, step, kHeld};
         }
       }
       if (!linear) prior.own.insert(prior.own.end(), all.begin(), all.end());
@@ -238,38 +160,47 @@ class Rounds {
       tried = with(tried, last_);
       ++pass;
     }
-    ArmFit best, current;
-    best.cost = current.cost = kInfinity;
-    MatrixXd by;
-    int shrunk = 0;
+    ArmFit best;
+    best.cost = kInfinity;
+    std::optional<RegressorGram> gram_of_best;
+    int rejected = 0;
     for (; pass <= options_.most_passes; ++pass) {
-      const RegressorGram gram = gram_at(tried);
+      RegressorGram gram = gram_at(tried);
       const Fit fit = linearFit(tried, gram);
       ArmFit next = with(tried, fit);
       next.cost = cost(fit, next, gram.samples());
-      const double gain = current.cost - next.cost;
-      if (pass > kFirstPasses && !(gain > 0)) {
-        if (++shrunk > kMostShrunk) break;
-        by *= 0.3;
-        tried = moved(current, by);
-        continue;
+      const double gain = best.cost - next.cost;
+      if (gram_of_best) adaptSteps(best, next);
+      if (gain > 0) {
+        best = next;
+        last_ = fit;
+        gram_of_best = std::move(gram);
+        rejected = 0;
+      } else if (!gram_of_best || ++rejected > kMostRejected) {
+        break;
       }
-      current = next;
-      last_ = fit;
-      if (next.cost < best.cost) best = next;
       if (pass == options_.most_passes) break;
-      by = stepOf(gram, next);
-      if (settled(by, next) || (pass > kFirstPasses && gain < kGain)) break;
-      tried = moved(next, by);
+      const MatrixXd by = stepOf(fullFit(best, *gram_of_best, 1));
+      if (gain > 0 && (settled(by, best) || gain < kGain)) break;
+      tried = moved(best, by);
     }
     best.passes = std::min(pass, options_.most_passes);
     return best;
   }
 
+  /// One step of all unknowns at once. gram: sums of other samples, at the fit.
+  ArmFit step(const ArmFit& from, const RegressorGram& gram) {
+    last_ = linearPart(from, rows_);
+    longest_.setOnes();
+    const Fit fit = fullFit(from, gram, kNoiseIterationsOfStep);
+    return moved(with(from, fit), stepOf(fit));
+  }
+
  private:
-  static constexpr double kGain = 1e-1;   // of the cost, that is worth another pass
-  static constexpr int kFirstPasses = 2;  // the way to a better fit may begin with a worse one
-  static constexpr int kMostShrunk = 2;   // steps that are tried again
+  static constexpr double kGain = 0.3;     // of the cost, that is worth another pass
+  static constexpr int kMostRejected = 3;  // steps in turn
+  static constexpr double kFirstStep = 0.3, kLongestStep = 0.6;  // units
+  static constexpr double kStopped = 1e-3;                       // of a unit
 
   static std::size_t at(Index j) { return static_cast<std::size_t>(j); }
 
@@ -349,9 +280,40 @@ class Rounds {
     return sum;
   }
 
-  /// Step of each curved unknown and law, from the last fit.
-  MatrixXd stepOf(const RegressorGram& gram, const ArmFit& arm) const {
-    const Fit fit = consistentFit(gram, prior(arm, false), fitOptions(1), &last_);
+  /// Shorter steps of laws whose joint's errors a step has made greater, longer ones of the others.
+  void adaptSteps(const ArmFit& from, const ArmFit& to) {
+    for (Index k = 0; k < laws(); ++k) {
+      const Index j = rows_.home(k).joint;
+      longest_[k] =
+          to.noise[j] > from.noise[j] ? 0.3 * longest_[k] : std::min(kLongestStep, 2 * longest_[k]);
+    }
+  }
+
+  /// The fit of all unknowns at once, with steps of the curved ones. Where limits stop some, the others
+  /// are fitted again.
+  Fit fullFit(const ArmFit& arm, const RegressorGram& gram, int noise_iterations) const {
+    const FitOptions how = fitOptions(noise_iterations);
+    const Fit fit = consistentFit(gram, prior(arm, false), how, &last_);
+    const MatrixXd by = stepOf(fit);
+    const ArmFit to = moved(arm, by);
+    MatrixXd held = MatrixXd::Constant(by.rows(), by.cols(), std::nan(""));
+    bool is_stopped = false;
+    for (Index k = 0; k < laws(); ++k) {
+      Index i = 0;
+      for (const Curved& unknown : curvedOf(k)) {
+        const double step = unknown.step(arm, to, k);
+        if (std::abs(step - by(i, k)) > kStopped * unknown.unit(arm, k)) {
+          held(i, k) = step;
+          is_stopped = true;
+        }
+        ++i;
+      }
+    }
+    return is_stopped ? consistentFit(gram, prior(arm, false, held), how, &fit) : fit;
+  }
+
+  /// Step of each curved unknown and law.
+  MatrixXd stepOf(const Fit& fit) const {
     MatrixXd by = MatrixXd::Zero(static_cast<Index>(curvedOf(0).size()), laws());
     for (Index k = 0; k < laws(); ++k) {
       Index i = 0;
@@ -370,7 +332,12 @@ class Rounds {
       Index i = 0;
       for (const Curved& unknown : curvedOf(j)) {
         double& value = unknown.value != nullptr ? law.*unknown.value : result.drive_gains[j];
-        value = unknown.moved(fit, j, by(i++, j));
+        value = unknown.moved(fit, j, by(i++, j), longest_[j]);
+      }
+      const double over = std::sqrt(2 * law.width / law.vs);
+      if (over > 1 && options_.terms >= FrictionTerms::kStribeck) {  // both give way
+        law.width /= over;
+        law.vs *= over;
       }
       law.vs = std::max(law.vs, 2 * law.width);
     }
@@ -393,8 +360,19 @@ class Rounds {
   bool has_gains_;  // whether they are fitted
   Reach reach_;
   std::vector<std::vector<Curved>> curved_;  // of each law
+  VectorXd longest_;                         // steps of each law's curved unknowns, in units
   Fit last_;  // of the last pass that was no worse, or what to start from
 };
+
+/// Without what the samples of a law can't tell.
+ArmFit withoutUnused(ArmFit fit, const OwnedMatrix& coupling) {
+  for (std::size_t k = 0; k < fit.friction.size(); ++k) {
+    StepFriction& law = fit.friction[k];
+    if (isCoupled(coupling, static_cast<Index>(k))) law.fl = 0;
+    if (law.fm == 0) law.distance = 0;
+  }
+  return fit;
+}
 
 std::vector<LinkPrior> priorsOf(const Mechanism& description, const LinkFloor& floor) {
   std::vector<LinkPrior> priors;
@@ -468,20 +446,43 @@ ArmFit ArmFitter::fit(const ArmData& data, const ArmFitOptions& options,
   std::vector<const ArmData::Block*> blocks;
   RegressorGram links = fast_.emptyGram();
   Reach reach(laws());
-  for (std::size_t b = 0; b < data.blocks_.size(); ++b) {
-    if (static_cast<int>(b) == options.without) continue;
-    blocks.push_back(&data.blocks_[b]);
-    links.add(data.blocks_[b].links);
-    reach.add(data.blocks_[b].samples, coupling_);
+  for (const ArmData::Block& block : data.blocks_) {
+    blocks.push_back(&block);
+    links.add(block.links);
+    reach.add(block.samples, coupling_);
   }
   if (links.samples() == 0) throw ModelError("ArmFitter: expected samples, got none");
   const auto gram_at = [&](const ArmFit& fit) { return gramOf(fit, options.terms, blocks, links); };
   const OwnRows rows = rowsOf(options.terms, options.drive_gains.size() > 0);
-  ArmFit found = Rounds(prior_, rows, reach, options).run(start, gram_at);
-  for (Index j = 0; j < laws(); ++j) {
-    StepFriction& law = found.friction[static_cast<std::size_t>(j)];
-    if (isCoupled(coupling_, j)) law.fl = 0;
-    if (law.fm == 0) law.distance = 0;
+  return withoutUnused(Rounds(prior_, rows, reach, options).run(start, gram_at), coupling_);
+}
+
+std::vector<ArmFit> ArmFitter::leftOut(const ArmFit& fit, const ArmData& data,
+                                       const ArmFitOptions& options) const {
+  check(fit);
+  checkOptions(joints(), options);
+  ArmFitOptions of = options;
+  of.drive_gains = fit.drive_gains;
+  const OwnRows rows = rowsOf(options.terms, fit.drive_gains.size() > 0);
+  RegressorGram before = fast_.emptyGram(rows.columns());  // a block
+  before.share(rows.unknowns());
+  Reach reach(laws());
+  std::vector<RegressorGram> grams, after = {before};
+  for (const ArmData::Block& block : data.blocks_) {
+    reach.add(block.samples, coupling_);
+    grams.push_back(gramOf(fit, options.terms, {&block}, block.links));
+  }
+  for (auto gram = grams.rbegin(); gram != grams.rend(); ++gram) {
+    after.push_back(after.back());
+    after.back().add(*gram);
+  }
+  Rounds rounds(prior_, rows, reach, of);
+  std::vector<ArmFit> found;
+  for (const RegressorGram& gram : grams) {
+    after.pop_back();
+    after.back().add(before);
+    found.push_back(withoutUnused(rounds.step(fit, after.back()), coupling_));
+    before.add(gram);
   }
   return found;
 }

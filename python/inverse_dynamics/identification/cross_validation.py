@@ -40,7 +40,7 @@ _SETTLED = 0.99  # of the error with the prior before: weaker ones aren't tried
 _CLEARLY_REMEMBERS = 0.925
 
 _STANDARD_ERRORS = 2.0  # by which a simpler alternative may be worse than the best
-_PASSES = 3  # over the samples, from a fit to nearly the same ones
+_PASSES = 2  # over the samples, from a fit to nearly the same ones
 _BAND = 0.95
 _LITTLE = 0.05  # of the uncertainty at rest, where a joint counts as moving
 _FOLDS = 8  # parts of blocks that are left out in turn, about
@@ -87,21 +87,20 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
     recorded = _Parts(fitter, blocks, 0.0, step)
     parts = _parts_of(fitter, blocks, recorded, step)
-    simplest = next(iter(LAWS))
-    fits = {simplest: parts[simplest].fit(simplest, STRENGTHS[1], None)}
-    noise = fits[simplest].noise
-    usual = _strengths(parts[simplest], simplest, fits[simplest], noise)
-    strength = usual[_simplest(usual, noise)[0]].prior_strength
-    laws: list[_Alternative] = []
-    for law in LAWS:
-        fits[law] = parts[law].fit(law, strength, fits[laws[-1].law if laws else simplest])
-        laws.append(parts[law].left_out(law, strength, [fits[law]] * len(recorded.blocks)))
-    law = laws[_simplest(laws, noise)[0]].law
-    alternatives = [
-        found
-        for one in laws
-        for found in (_strengths(parts[law], law, fits[law], noise) if one.law == law else [one])
-    ]
+    simplest, *others = LAWS
+    fit = parts[simplest].fit(simplest, STRENGTHS[1], None)
+    fits, noise = {simplest: fit}, fit.noise
+    usual = _strengths(parts[simplest], simplest, fit, noise)
+    laws = [usual[_simplest(usual, noise)[0]]]
+    strength = laws[0].prior_strength
+    for law in others:
+        fit = fits[law] = parts[law].fit(law, strength, fit)
+        laws.append(parts[law].left_out(law, strength, fit))
+    one = laws[_simplest(laws, noise)[0]]
+    at = laws.index(one)
+    if at > 0:
+        usual = _strengths(parts[one.law], one.law, fits[one.law], noise, one)
+    alternatives = [*laws[:at], *usual, *laws[at + 1 :]]
     chosen, choices = _simplest(alternatives, noise)
     best = alternatives[chosen]
     blocks = [block.later(best.delay) for block in blocks]
@@ -138,8 +137,7 @@ class _Alternative:
     law: str
     prior_strength: float
     delay: float
-    fits: list[ArmFit]  # to all parts but one
-    errors: list[Floats]  # of that part, (M, n)
+    errors: list[Floats]  # of each part, by a fit to the others, (M, n)
 
     def scores(self, noise: Floats) -> Floats:
         """Of each part: mean over the joints of the RMSE in units of the noise."""
@@ -164,23 +162,12 @@ class _Parts:
         """The fit to all parts."""
         return self._fitter.fit(self.data, ArmFitOptions(law, prior_strength=strength), start)
 
-    def left_out(
-        self,
-        law: str,
-        strength: float,
-        starts: Sequence[ArmFit],
-        *,
-        passes: int = _PASSES,
-    ) -> _Alternative:
-        """Fits to all parts but one, each from a start, and the errors of that part."""
-        options = ArmFitOptions(law, prior_strength=strength, most_passes=passes)
-        fits = []
-        for k, start in enumerate(starts):
-            options.without = k
-            fits.append(self._fitter.fit(self.data, options, start))
-        pairs = zip(fits, self.tested, strict=True)
-        errors = [errors_of(self._fitter, fit, part) for fit, part in pairs]
-        return _Alternative(law, strength, self.delay, fits, errors)
+    def left_out(self, law: str, strength: float, fit: ArmFit) -> _Alternative:
+        """The errors of each part, of fits to the others that begin with a fit to all."""
+        options = ArmFitOptions(law, prior_strength=strength)
+        pairs = zip(self._fitter.left_out(fit, self.data, options), self.tested, strict=True)
+        errors = [errors_of(self._fitter, others, part) for others, part in pairs]
+        return _Alternative(law, strength, self.delay, errors)
 
 
 def _parts_of(
@@ -191,11 +178,11 @@ def _parts_of(
     Friction that lags behind a reversal looks like a delay to a law without memory; a law with memory may take some of
     its own lag back. So the lesser one of both delays is that of the law with memory.
     """
-    delay, start = _delay(fitter, blocks, step, _DELAY_LAW)
+    delay, start = _delay(fitter, blocks, step, _DELAY_LAW, None)
     plain = _with_delay(fitter, blocks, recorded, step, _DELAY_LAW, delay, start)
     parts = dict.fromkeys(LAWS, plain)
     if plain.delay != 0:
-        delay, start = _delay(fitter, blocks, step, _MEMORY)
+        delay, start = _delay(fitter, blocks, step, _MEMORY, start)
         lesser = min(delay, plain.delay, key=abs) if delay * plain.delay > 0 else 0.0
         parts[_MEMORY] = _with_delay(fitter, blocks, recorded, step, _MEMORY, lesser, start)
     return parts
@@ -214,9 +201,8 @@ def _with_delay(
     if delay == 0:
         return recorded
     later = _Parts(fitter, blocks, delay, step)
-    starts = [start] * len(recorded.blocks)
     before, after = (
-        parts.left_out(law, STRENGTHS[1], starts, passes=1).scores(start.noise).mean()
+        parts.left_out(law, STRENGTHS[1], start).scores(start.noise).mean()
         for parts in (recorded, later)
     )
     if after >= before:
@@ -226,7 +212,7 @@ def _with_delay(
 
 
 def _delay(
-    fitter: ArmFitter, blocks: Sequence[Block], thinned: int, law: str
+    fitter: ArmFitter, blocks: Sequence[Block], thinned: int, law: str, start: ArmFit | None
 ) -> tuple[float, ArmFit]:
     """By how much the torques are later than the states [s], and a fit with nearly that delay; zero: there is none.
 
@@ -235,16 +221,19 @@ def _delay(
     """
     periods = np.concatenate([np.diff(block.instants[block.used]) for block in blocks])
     step = max(float(np.median(periods[periods > 0])), _DELAY_STEP)
-    options = ArmFitOptions(law, prior_strength=STRENGTHS[1], most_passes=_PASSES)
+    settled = ArmFitOptions(law, prior_strength=STRENGTHS[1])
+    near = ArmFitOptions(law, prior_strength=STRENGTHS[1], most_passes=_PASSES)
     center, vertices = 0.0, 0
-    start: ArmFit | None = None
+
+    def at(delay: float, options: ArmFitOptions, start: ArmFit | None) -> ArmFit:
+        samples = [block.later(delay, thinned) for block in blocks]
+        return fitter.fit(data_of(fitter, samples), options, start)
+
     for _ in range(_MOST_DELAY_STEPS):
-        costs = []
-        for delay in (center - step, center, center + step):
-            samples = [block.later(delay, thinned) for block in blocks]
-            start = fitter.fit(data_of(fitter, samples), options, start)
-            # samples at the ends of blocks are fewer where the delay is greater
-            costs.append(2 * float(np.log(start.noise).sum()))
+        start = at(center, near if vertices else settled, start)
+        fits = [at(center - step, near, start), start, at(center + step, near, start)]
+        # samples at the ends of blocks are fewer where the delay is greater
+        costs = [2 * float(np.log(fit.noise).sum()) for fit in fits]
         slope, curvature = costs[0] - costs[2], costs[0] - 2 * costs[1] + costs[2]
         if curvature <= 0:
             center += 2 * step * float(np.sign(slope))
@@ -259,17 +248,18 @@ def _delay(
     return (center if found else 0.0), start
 
 
-def _strengths(parts: _Parts, law: str, start: ArmFit, noise: Floats) -> list[_Alternative]:
-    """Fits with usual prior strengths, and with ever weaker ones as far as they predict clearly better."""
-    found = [parts.left_out(law, STRENGTHS[0], [start] * len(parts.blocks))]
-    for strength in STRENGTHS[1:]:
-        found.append(parts.left_out(law, strength, found[-1].fits))
+def _strengths(
+    parts: _Parts, law: str, start: ArmFit, noise: Floats, *known: _Alternative
+) -> list[_Alternative]:
+    """Usual prior strengths, and ever weaker ones as far as they predict clearly better. known: some of them."""
+    of = {one.prior_strength: one for one in known}
+    found = [of.get(strength) or parts.left_out(law, strength, start) for strength in STRENGTHS]
     usual = len(found)
     errors = [alternative.scores(noise).mean() for alternative in found]
     if errors[-1] > min(errors):
         return found
     while found[-1].prior_strength > _WEAKEST:
-        found.append(parts.left_out(law, found[-1].prior_strength / 10, found[-1].fits))
+        found.append(parts.left_out(law, found[-1].prior_strength / 10, start))
         errors.append(found[-1].scores(noise).mean())
         if errors[-1] > _SETTLED * errors[-2]:
             break

@@ -194,12 +194,10 @@ def _half_widths(fitter: ArmFitter, fit: ArmFit, currents: ArmData) -> Floats:
     What leaving out each block changes (the jackknife), for errors that are correlated;
     the cluster-robust ones, with the prior and hardly without.
     """
-    gains, without = fit.drive_gains, []
-    assert gains is not None
-    for k in range(len(currents)):
-        again = fitter.fit(currents, _options(drive_gains=gains, without=k), fit)
-        assert again.drive_gains is not None
-        without.append(np.log(again.drive_gains))
+    without = []
+    for others in fitter.left_out(fit, currents, _options()):
+        assert others.drive_gains is not None
+        without.append(np.log(others.drive_gains))
     deviations = [np.sqrt((len(currents) - 1) * np.var(without, axis=0))]
     data, prior, scores = fitter.information(fit, currents, _options())
     n = len(fitter.joint_names)

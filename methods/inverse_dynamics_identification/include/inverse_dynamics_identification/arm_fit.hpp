@@ -98,7 +98,6 @@ struct ArmFitOptions {
   FrictionTerms terms = FrictionTerms::kStep;
   double prior_strength = 100;  ///< gamma [consistent_fit.hpp]
   int most_passes = 10;         ///< over the samples
-  int without = -1;             ///< number of a block that is left out; -1: none
   /// Whether the step may be off zero velocity. Friction at rest is a constant then, although it may be
   /// anything up to its step: it helps within a recording, not on another day.
   bool shift = false;
@@ -165,10 +164,10 @@ class ArmFitter {
   /// @throws chain_dynamics::ModelError  no samples, other numbers of joints.
   ArmData data(std::vector<ArmSamples> blocks) const;
 
-  /// A fit to the samples of all blocks, but for one that is left out.
+  /// A fit to the samples of all blocks.
   ///
   /// @param start  another fit to begin with; its terms may be others.
-  /// @throws chain_dynamics::ModelError  no samples are left, numbers that aren't finite, a fit of another
+  /// @throws chain_dynamics::ModelError  no samples, numbers that aren't finite, a fit of another
   ///     arm, drive gains that aren't above zero.
   ArmFit fit(const ArmData& data, const ArmFitOptions& options,
              const ArmFit* start = nullptr) const;
@@ -177,6 +176,13 @@ class ArmFitter {
              const ArmFit* start = nullptr) const {
     return fit(data(blocks), options, start);
   }
+
+  /// Of each block, a fit to the others: one Gauss-Newton step of all unknowns from a fit to all blocks.
+  ///
+  /// @param options  those of the fit; the strength of the prior may be another.
+  /// @throws chain_dynamics::ModelError  as fit().
+  std::vector<ArmFit> leftOut(const ArmFit& fit, const ArmData& data,
+                              const ArmFitOptions& options) const;
 
   /// What the samples of each block say at a fit, weighed by its noise.
   ArmInformation information(const ArmFit& fit, const ArmData& data,

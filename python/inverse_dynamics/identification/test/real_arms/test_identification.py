@@ -231,7 +231,7 @@ def delay_where(noise_of):
         used=np.array([True, True]),
         later=lambda delay, _: SimpleNamespace(fitted=delay, before=None),
     )
-    return cross_validation._delay(fitter, [block], 1, "step")[0]
+    return cross_validation._delay(fitter, [block], 1, "step", None)[0]
 
 
 @pytest.mark.parametrize(("best", "found"), [(3e-5, 0.0), (0.003, 0.003), (-0.003, -0.003)])
