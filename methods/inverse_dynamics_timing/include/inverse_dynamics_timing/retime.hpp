@@ -20,6 +20,9 @@
 /// isn't linear in z: each step solves its linear program again with friction at the solution, until
 /// nothing changes, so friction there is exact.
 ///
+/// What friction remembers follows from the path up to what the motion before left
+/// [chain_dynamics/friction_state.hpp]; limits hold for all that this may be.
+///
 /// Where friction falls with speed (Stribeck), the speeds from which the end is reached may not be one
 /// interval; they are taken for one.
 #pragma once
