@@ -8,6 +8,7 @@
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
 #include <inverse_dynamics_ros/retime_parameters.hpp>
 #include <inverse_dynamics_ros/robot_parameters.hpp>
+#include <inverse_dynamics_solver/friction_memory.hpp>
 #include <rclcpp/duration.hpp>
 
 #include "robot_parameters.hpp"
@@ -172,15 +173,19 @@ Retiming::JointTrajectory Retiming::sampled(const Trajectory& motion) const {
   result.joint_names = joints_;
   const VectorXd times = inverse_dynamics_timing::sampleTimes(motion.duration(), rate_);
   result.points.resize(static_cast<std::size_t>(times.size()));
-  VectorXd q(lower_.size()), qd(q), qdd(q);
+  VectorXd q(lower_.size()), qd(q), qdd(q), tau(q);
+  auto friction = inverse_dynamics_solver::frictionState(*solver_);
   for (Index k = 0; k < times.size(); ++k) {
     motion.evaluate(times[k], q, qd, qdd);
+    solver_->getTorques(q, qd, qdd, tau);
+    friction.move(q);
+    friction.addTo(qd, tau);
     auto& point = result.points[static_cast<std::size_t>(k)];
     point.time_from_start = rclcpp::Duration::from_seconds(times[k]);
     copy(q, point.positions);
     copy(qd, point.velocities);
     copy(qdd, point.accelerations);
-    copy(solver_->getTorques(q, qd, qdd), point.effort);
+    copy(tau, point.effort);
   }
   return result;
 }
