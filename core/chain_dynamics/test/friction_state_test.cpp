@@ -142,8 +142,10 @@ TEST(FrictionState, RangeEndsAtTheFrictionOfJointsThatCameFromOneSide) {
   FrictionState unknown(coupled);
   // Of the first joint both motors matter: the one that turns with it, and the one that turns against it.
   FrictionState least(coupled), most(coupled);
-  least.move(start + Eigen::Vector2d(kFar, 0));
-  most.move(start - Eigen::Vector2d(kFar, 0));
+  for (const double from : {kFar, -kPlay}) {  // and to the middle of the play
+    least.move(start + Eigen::Vector2d(from, 0));
+    most.move(start - Eigen::Vector2d(from, 0));
+  }
   for (const double by : {0.0, 0.01, -0.02, 0.005}) {
     const Eigen::Vector2d q = start + by * Eigen::Vector2d(1, 3);
     VectorXd low = VectorXd::Zero(2), high = low, from_above = low, from_below = low;

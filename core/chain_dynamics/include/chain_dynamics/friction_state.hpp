@@ -102,7 +102,8 @@ class FrictionState {
   /// move() and addTo() of N states in the order of time.
   void addAlong(const ConstStates& q, const ConstStates& qd, const States& f) noexcept;
 
-  /// Adds the least and the greatest that addTo() would add, whatever the motion before was.
+  /// Adds the least and the greatest that addTo() would add, whatever the motion before was, if it
+  /// left the joint in the middle of the play; else both may differ by 2 p times the play over d.
   ///
   /// @param qd                  as of addTo().
   /// @param[in,out] least,most  n each; frictionVector(), or torques that contain it; N m (prismatic N).

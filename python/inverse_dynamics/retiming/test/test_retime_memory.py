@@ -9,6 +9,7 @@ from inverse_dynamics._core import sample_times
 
 ROBOT = "ur10_salerno_identified"
 FAR = 20.0  # rad, over which friction forgets what was before
+PLAY = 5e-5  # rad, of the memory
 WAYPOINTS = np.array(
     [
         [0.0, -1.0, 1.0, 0.0, 0.0, 0.0],
@@ -28,6 +29,7 @@ def solver():
 def came_from(solver, side):
     state = solver.friction_state()
     state.move(WAYPOINTS[0] + side * FAR)
+    state.move(WAYPOINTS[0] - side * PLAY)  # and back to its middle
     return state
 
 
