@@ -23,7 +23,7 @@ LOADS = (
     ("panda", 1.0, 4.0, False, True),
     ("panda", 1.0, 4.0, True, False),
     ("panda", 1.0, 8.0, False, True),
-    ("panda", 1.0, 8.0, True, False),
+    ("panda", 1.0, 8.0, True, True),
     ("ur10", 5.0, 4.0, False, True),
     ("ur10", 5.0, 8.0, False, True),
 )

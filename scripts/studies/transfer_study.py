@@ -130,15 +130,16 @@ def rows_of(name: str, clones: Path, scratch: Path) -> list[tuple[str, ...]]:
     robot, recordings = arm_of(name, clones, scratch)
     for fitted, tested in FITS[name]:
         found = identify([recordings[x] for x in fitted], robot)
+        law = "stribeck" if found.law == "memory" else found.law
         files = write_identification(found, scratch / f"{name}_{'_'.join(fitted)}.yaml")
         train = [Samples.of(evaluate(recordings[x], robot), MOST_SAMPLES) for x in fitted]
         for label in tested:
             e = evaluate(recordings[label], files.robot)
             test = Samples.of(e)
             plain, same = (
-                least_squares(found.robot, train, test, law) for law in ("step", found.law)
+                least_squares(found.robot, train, test, terms) for terms in ("step", law)
             )
-            own = least_squares(found.robot, [test.moving], test, found.law)["consistent"]
+            own = least_squares(found.robot, [test.moving], test, law)["consistent"]
             assert e.band is not None
             kept = e.samples.kept
             errors = (e.measured - e.computed)[kept]
