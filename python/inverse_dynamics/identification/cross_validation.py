@@ -65,6 +65,8 @@ class Chosen:
     band: Floats  # (n,) half the width of the 95 % band
     noise: Floats  # (n,) standard deviation of held-out torques of a joint while it moves
     choices: tuple[Choice, ...]
+    delays: Mapping[str, float]  # of each law [s], made up for
+    fits: Mapping[str, ArmFit]  # of each law, to the samples that choices were made with
 
     @property
     def options(self) -> ArmFitOptions:
@@ -78,23 +80,26 @@ def errors_of(fitter: ArmFitter, fit: ArmFit, block: Block) -> Floats:
     return tau - fitter.torques(fit, q, qd, qdd, before=block.before)
 
 
-def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
+def choose(fitter: ArmFitter, blocks: Sequence[Block], of_more: Chosen | None = None) -> Chosen:
     """The fit to all blocks, chosen by leaving out each part in turn.
 
-    Choices use equidistant samples of long recordings; the fit uses all.
+    Choices use equidistant samples of long recordings; the fit uses all. of_more: what was chosen on these blocks and
+    others. Its delays are taken, which belong to the recording, and its fits begin those to these blocks.
     """
     blocks = moving(blocks)
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
     recorded = _Parts(fitter, blocks, 0.0, step)
-    parts = _parts_of(fitter, blocks, recorded, step)
+    delays = of_more.delays if of_more else _delays(fitter, blocks, recorded, step)
+    parts = _parts_of(fitter, blocks, recorded, step, delays)
+    starts = of_more.fits if of_more else {}
     simplest, *others = LAWS
-    fit = parts[simplest].fit(simplest, STRENGTHS[1], None)
+    fit = parts[simplest].fit(simplest, STRENGTHS[1], starts.get(simplest))
     fits, noise = {simplest: fit}, fit.noise
     usual = _strengths(parts[simplest], simplest, fit, noise)
     laws = [usual[_simplest(usual, noise)[0]]]
     strength = laws[0].prior_strength
     for law in others:
-        fit = fits[law] = parts[law].fit(law, strength, fit)
+        fit = fits[law] = parts[law].fit(law, strength, starts.get(law, fit))
         laws.append(parts[law].left_out(law, strength, fit))
     one = laws[_simplest(laws, noise)[0]]
     at = laws.index(one)
@@ -118,6 +123,8 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
         band=np.quantile(errors, _BAND, axis=0),
         noise=noise_in_motion(errors, qd, fit.friction[: qd.shape[1]]),
         choices=choices,
+        delays=delays,
+        fits=fits,
     )
 
 
@@ -171,24 +178,39 @@ class _Parts:
 
 
 def _parts_of(
-    fitter: ArmFitter, blocks: Sequence[Block], recorded: _Parts, step: int
+    fitter: ArmFitter,
+    blocks: Sequence[Block],
+    recorded: _Parts,
+    step: int,
+    delays: Mapping[str, float],
 ) -> dict[str, _Parts]:
-    """Parts for each law, with the delay made up for that it finds.
+    """Parts for each law, with its delay made up for."""
+    of = {0.0: recorded}
+    for delay in {*delays.values()} - {0.0}:
+        of[delay] = _Parts(fitter, blocks, delay, step)
+        of[delay].tested = recorded.blocks  # as solvers compute torques: the delay isn't made up for
+    return {law: of[delay] for law, delay in delays.items()}
+
+
+def _delays(
+    fitter: ArmFitter, blocks: Sequence[Block], recorded: _Parts, step: int
+) -> dict[str, float]:
+    """The delay that is made up for with each law [s].
 
     Friction that lags behind a reversal looks like a delay to a law without memory; a law with memory may take some of
     its own lag back. So the lesser one of both delays is that of the law with memory.
     """
     delay, start = _delay(fitter, blocks, step, _DELAY_LAW, None)
-    plain = _with_delay(fitter, blocks, recorded, step, _DELAY_LAW, delay, start)
-    parts = dict.fromkeys(LAWS, plain)
-    if plain.delay != 0:
+    plain = _helpful(fitter, blocks, recorded, step, _DELAY_LAW, delay, start)
+    delays = dict.fromkeys(LAWS, plain)
+    if plain != 0:
         delay, start = _delay(fitter, blocks, step, _MEMORY, start)
-        lesser = min(delay, plain.delay, key=abs) if delay * plain.delay > 0 else 0.0
-        parts[_MEMORY] = _with_delay(fitter, blocks, recorded, step, _MEMORY, lesser, start)
-    return parts
+        lesser = min(delay, plain, key=abs) if delay * plain > 0 else 0.0
+        delays[_MEMORY] = _helpful(fitter, blocks, recorded, step, _MEMORY, lesser, start)
+    return delays
 
 
-def _with_delay(
+def _helpful(
     fitter: ArmFitter,
     blocks: Sequence[Block],
     recorded: _Parts,
@@ -196,19 +218,15 @@ def _with_delay(
     law: str,
     delay: float,
     start: ArmFit,
-) -> _Parts:
-    """The parts with the delay made up for, if the law then predicts those that are left out better."""
+) -> float:
+    """The delay, if the law predicts parts that are left out better where it is made up for; else zero."""
     if delay == 0:
-        return recorded
-    later = _Parts(fitter, blocks, delay, step)
+        return delay
     before, after = (
         parts.left_out(law, STRENGTHS[1], start).scores(start.noise).mean()
-        for parts in (recorded, later)
+        for parts in (recorded, _Parts(fitter, blocks, delay, step))
     )
-    if after >= before:
-        return recorded
-    later.tested = recorded.blocks  # as solvers compute torques: the delay isn't made up for
-    return later
+    return delay if after < before else 0.0
 
 
 def _delay(

@@ -238,8 +238,9 @@ def identify(
     moved = _core.RobotDescription(description).chain(fitter.link_joints, robot.root)
     solvers = baselines(robot, description)
     limits = _effort_limits(moved, joints) if by_day else None
-    held_out = _held_out(fitter, described, limits, solvers, groups, progress)
-    found = _result(fitter, described, moved, evaluations, groups, held_out, by_day=by_day)
+    chosen = choose(fitter, [block for group in groups for block in group])
+    held_out = _held_out(fitter, described, limits, solvers, groups, chosen, progress)
+    found = _result(fitter, described, moved, evaluations, groups, chosen, held_out, by_day=by_day)
     notes = tuple(dict.fromkeys((*posture.notes, *unfitted, *found.notes)))
     found = replace(found, drive_gains=gains, notes=notes)
     check_result(found, accept)
@@ -376,6 +377,7 @@ def _held_out(
     limits: Floats | None,
     solvers: Mapping[str, Solver],
     groups: Sequence[Sequence[Block]],
+    of_all: Chosen,
     progress: Progress,
 ) -> list[HeldOutBlock]:
     """The blocks of each group, predicted by models fitted to, and chosen on, the others."""
@@ -391,7 +393,7 @@ def _held_out(
         progress("predicting held-out blocks", k, len(groups) + 1)
         others = [block for other in (*groups[:k], *groups[k + 1 :]) for block in other]
         fitted = [rows for other in (*computed[:k], *computed[k + 1 :]) for rows in other]
-        chosen = choose(fitter, others)
+        chosen = choose(fitter, others, of_all)
         # errors are correlated in time: some samples suffice for the band
         step = 1 + sum(map(len, others)) // _BAND_SAMPLES
         some = [block.later(0.0, step) for block in chosen.blocks]
@@ -457,6 +459,7 @@ def _result(
     moved: Sequence[DescribedJoint],
     evaluations: Sequence[Evaluation],
     groups: Sequence[Sequence[Block]],
+    chosen: Chosen,
     held_out: Sequence[HeldOutBlock],
     *,
     by_day: bool,
@@ -464,7 +467,6 @@ def _result(
     """The model of all blocks, and what the data tell of it."""
     first, links = evaluations[0], tuple(joint.child for joint in moved)
     blocks = [block for group in groups for block in group]
-    chosen = choose(fitter, blocks)
     later = chosen.blocks
     errors = [errors_of(fitter, chosen.fit, block) for block in later]
     independent, samples = independent_samples(errors), sum(map(len, errors))
