@@ -34,7 +34,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kNoiseIterations = 4;
-constexpr int kNoiseIterationsOfStep = 2;  // from nearly the same noise
+constexpr int kNoiseIterationsOfStep = 1;  // from nearly the same noise
 
 /// Prior of the coefficient of a column that torques are linear in.
 OwnColumn linearColumn(Index column, const FrictionPrior& prior) {
@@ -198,6 +198,7 @@ class Rounds {
 
  private:
   static constexpr double kGain = 0.3;     // of the cost, that is worth another pass
+  static constexpr double kStepTolerance = 1e-3;  // of the cost
   static constexpr int kMostRejected = 3;  // steps in turn
   static constexpr double kFirstStep = 0.3, kLongestStep = 0.6;  // units
   static constexpr double kStopped = 1e-3;                       // of a unit
@@ -292,7 +293,8 @@ class Rounds {
   /// The fit of all unknowns at once, with steps of the curved ones. Where limits stop some, the others
   /// are fitted again.
   Fit fullFit(const ArmFit& arm, const RegressorGram& gram, int noise_iterations) const {
-    const FitOptions how = fitOptions(noise_iterations);
+    FitOptions how = fitOptions(noise_iterations);
+    how.tolerance = kStepTolerance;
     const Fit fit = consistentFit(gram, prior(arm, false), how, &last_);
     const MatrixXd by = stepOf(fit);
     const ArmFit to = moved(arm, by);

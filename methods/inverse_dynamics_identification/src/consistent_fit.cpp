@@ -267,7 +267,7 @@ class Cost {
       cost = there;
       // after a full step, Newton's decrement is at most twice its square [Boyd, Vandenberghe, 9.6]
       const double next = 4 * decrease * decrease / std::min(1.0, strength);
-      if (share == 1 && next < kTolerance * std::abs(cost)) return;
+      if (share == 1 && next < tolerance + kTolerance * std::abs(cost)) return;
     }
   }
 
@@ -342,11 +342,12 @@ Fit fitOf(const VectorXd& x, const Data& data) {
 }
 
 /// From the prior, along the path, or from a start that is a robot.
-void solve(const Cost& cost, double strength, double first_strength, VectorXd& x, int& steps) {
+void solve(const Cost& cost, double strength, double first_strength, double tolerance, VectorXd& x,
+           int& steps) {
   for (double gamma = first_strength; gamma > strength * kPathFactor; gamma /= kPathFactor) {
     cost.minimise(gamma, kStageTolerance * gamma, x, steps);
   }
-  cost.minimise(strength, 0, x, steps);
+  cost.minimise(strength, tolerance, x, steps);
 }
 
 void check(const Data& data, const Prior& prior, const FitOptions& options) {
@@ -385,7 +386,7 @@ Fit consistentFit(const RegressorGram& gram, const Prior& prior, const FitOption
     // where one unit of gamma outweighs the torques, the solution is the prior
     const double outweighs = (data.torques().array() / noise.array()).square().sum() *
                              static_cast<double>(gram.samples());
-    solve(cost, strength, started ? strength : outweighs, x, steps);
+    solve(cost, strength, started ? strength : outweighs, options.tolerance, x, steps);
     started = true;
     const VectorXd next = data.noise(x);
     const double change = (next.array() / noise.array() - 1).abs().maxCoeff();

@@ -66,6 +66,7 @@ struct Prior {
 struct FitOptions {
   double prior_strength = 100;  ///< gamma > 0
   int noise_iterations = 4;     ///< fits, with an estimate of the noise after each
+  double tolerance = 0;         ///< of the cost, beyond rounding
   OwnedVector noise = {};       ///< n; standard deviations to begin with; N m; empty: by itself
 };
 
