@@ -319,6 +319,8 @@ class _Contest:
         for i in map(int, np.argsort(scores, kind="stable")):
             if tied and not self.alike(i, tied[0], _MARGIN):
                 break
+            if _MARGIN * scores[i] > before:  # a remedy leaves hardly less than its rival's own fit
+                break
             finding, after = self.remedy(i)
             # a scale of zero is no explanation
             if finding and _small(after, least[finding.kind in _SCALES], finding):
