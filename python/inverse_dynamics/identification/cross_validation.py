@@ -66,7 +66,6 @@ class Chosen:
     noise: Floats  # (n,) standard deviation of held-out torques of a joint while it moves
     choices: tuple[Choice, ...]
     delays: Mapping[str, float]  # of each law [s], made up for
-    fits: Mapping[str, ArmFit]  # of each law, to the samples that choices were made with
 
     @property
     def options(self) -> ArmFitOptions:
@@ -80,26 +79,26 @@ def errors_of(fitter: ArmFitter, fit: ArmFit, block: Block) -> Floats:
     return tau - fitter.torques(fit, q, qd, qdd, before=block.before)
 
 
-def choose(fitter: ArmFitter, blocks: Sequence[Block], of_more: Chosen | None = None) -> Chosen:
+def choose(
+    fitter: ArmFitter, blocks: Sequence[Block], delays: Mapping[str, float] | None = None
+) -> Chosen:
     """The fit to all blocks, chosen by leaving out each part in turn.
 
-    Choices use equidistant samples of long recordings; the fit uses all. of_more: what was chosen on these blocks and
-    others. Its delays are taken, which belong to the recording, and its fits begin those to these blocks.
+    Choices use equidistant samples of long recordings; the fit uses all. delays: of each law [s], if they are known.
     """
     blocks = moving(blocks)
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
     recorded = _Parts(fitter, blocks, 0.0, step)
-    delays = of_more.delays if of_more else _delays(fitter, blocks, recorded, step)
+    delays = delays or _delays(fitter, blocks, recorded, step)
     parts = _parts_of(fitter, blocks, recorded, step, delays)
-    starts = of_more.fits if of_more else {}
     simplest, *others = LAWS
-    fit = parts[simplest].fit(simplest, STRENGTHS[1], starts.get(simplest))
+    fit = parts[simplest].fit(simplest, STRENGTHS[1], None)
     fits, noise = {simplest: fit}, fit.noise
     usual = _strengths(parts[simplest], simplest, fit, noise)
     laws = [usual[_simplest(usual, noise)[0]]]
     strength = laws[0].prior_strength
     for law in others:
-        fit = fits[law] = parts[law].fit(law, strength, starts.get(law, fit))
+        fit = fits[law] = parts[law].fit(law, strength, fit)
         laws.append(parts[law].left_out(law, strength, fit))
     one = laws[_simplest(laws, noise)[0]]
     at = laws.index(one)
@@ -124,7 +123,6 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block], of_more: Chosen | None = 
         noise=noise_in_motion(errors, qd, fit.friction[: qd.shape[1]]),
         choices=choices,
         delays=delays,
-        fits=fits,
     )
 
 
@@ -187,8 +185,8 @@ def _parts_of(
     """Parts for each law, with its delay made up for."""
     of = {0.0: recorded}
     for delay in {*delays.values()} - {0.0}:
-        of[delay] = _Parts(fitter, blocks, delay, step)
-        of[delay].tested = recorded.blocks  # as solvers compute torques: the delay isn't made up for
+        later = of[delay] = _Parts(fitter, blocks, delay, step)
+        later.tested = recorded.blocks  # as solvers compute torques: the delay isn't made up for
     return {law: of[delay] for law, delay in delays.items()}
 
 

@@ -239,7 +239,7 @@ def identify(
     solvers = baselines(robot, description)
     limits = _effort_limits(moved, joints) if by_day else None
     chosen = choose(fitter, [block for group in groups for block in group])
-    held_out = _held_out(fitter, described, limits, solvers, groups, chosen, progress)
+    held_out = _held_out(fitter, described, limits, solvers, groups, chosen.delays, progress)
     found = _result(fitter, described, moved, evaluations, groups, chosen, held_out, by_day=by_day)
     notes = tuple(dict.fromkeys((*posture.notes, *unfitted, *found.notes)))
     found = replace(found, drive_gains=gains, notes=notes)
@@ -377,10 +377,13 @@ def _held_out(
     limits: Floats | None,
     solvers: Mapping[str, Solver],
     groups: Sequence[Sequence[Block]],
-    of_all: Chosen,
+    delays: Mapping[str, float],
     progress: Progress,
 ) -> list[HeldOutBlock]:
-    """The blocks of each group, predicted by models fitted to, and chosen on, the others."""
+    """The blocks of each group, predicted by models fitted to, and chosen on, the others.
+
+    delays: of each law [s], found on all blocks: those of the recording's clock, one number.
+    """
     found = []
     present = solvers.get("present")
     computed = [
@@ -393,7 +396,7 @@ def _held_out(
         progress("predicting held-out blocks", k, len(groups) + 1)
         others = [block for other in (*groups[:k], *groups[k + 1 :]) for block in other]
         fitted = [rows for other in (*computed[:k], *computed[k + 1 :]) for rows in other]
-        chosen = choose(fitter, others, of_all)
+        chosen = choose(fitter, others, delays)
         # errors are correlated in time: some samples suffice for the band
         step = 1 + sum(map(len, others)) // _BAND_SAMPLES
         some = [block.later(0.0, step) for block in chosen.blocks]
