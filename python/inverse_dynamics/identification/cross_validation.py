@@ -49,7 +49,7 @@ _DELAY_STEP = 0.008  # s, at least
 _MOST_DELAY_STEPS = 8
 _VERTICES = 2
 _LEAST_DELAY = 1e-4  # s; a shorter one counts as none
-_DELAY_LAW = "load"  # what delays are looked for with
+_BASE = "load"  # the law that delays are looked for with, and that fits of richer ones begin with
 _MEMORY = "memory"  # the law whose friction lags behind
 
 
@@ -98,7 +98,7 @@ def choose(
     laws = [usual[_simplest(usual, noise)[0]]]
     strength = laws[0].prior_strength
     for law in others:
-        fit = fits[law] = parts[law].fit(law, strength, fit)
+        fit = fits[law] = parts[law].fit(law, strength, fits.get(_BASE, fit))
         laws.append(parts[law].left_out(law, strength, fit))
     one = laws[_simplest(laws, noise)[0]]
     at = laws.index(one)
@@ -198,8 +198,8 @@ def _delays(
     Friction that lags behind a reversal looks like a delay to a law without memory; a law with memory may take some of
     its own lag back. So the lesser one of both delays is that of the law with memory.
     """
-    delay, start = _delay(fitter, blocks, step, _DELAY_LAW, None)
-    plain = _helpful(fitter, blocks, recorded, step, _DELAY_LAW, delay, start)
+    delay, start = _delay(fitter, blocks, step, _BASE, None)
+    plain = _helpful(fitter, blocks, recorded, step, _BASE, delay, start)
     delays = dict.fromkeys(LAWS, plain)
     if plain != 0:
         delay, start = _delay(fitter, blocks, step, _MEMORY, start)
