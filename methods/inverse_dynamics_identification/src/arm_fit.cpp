@@ -150,7 +150,7 @@ class Rounds {
     }
     for (Index j = 0; j < laws(); ++j) {  // of a start without memory
       double& distance = tried.friction[at(j)].distance;
-      if (distance == 0) distance = options_.friction.distance * reach_.range(j);
+      if (distance == 0) distance = options_.friction.distance;
     }
     int pass = 1;
     if (start != nullptr) {

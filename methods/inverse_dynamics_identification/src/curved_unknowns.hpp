@@ -51,22 +51,16 @@ struct Curved {
   }
 };
 
-/// How far and how fast what has friction moves: by the coupling, or joints.
+/// How fast what has friction moves: by the coupling, or joints.
 class Reach {
  public:
-  explicit Reach(Eigen::Index laws)
-      : greatest_(Eigen::VectorXd::Zero(laws)),
-        lower_(Eigen::VectorXd::Constant(laws, kInfinity)),
-        upper_(-lower_) {}
+  explicit Reach(Eigen::Index laws) : greatest_(Eigen::VectorXd::Zero(laws)) {}
 
   void add(const ArmSamples& samples, const OwnedMatrix& coupling) {
     for (Eigen::Index k = 0; k < samples.qd.count; ++k) {
       for (Eigen::Index j = 0; j < laws(); ++j) {
         const double v = atLaw(coupling, j, [&](Eigen::Index i) { return samples.qd(i, k); });
-        const double q = atLaw(coupling, j, [&](Eigen::Index i) { return samples.q(i, k); });
         greatest_[j] = std::max(greatest_[j], std::abs(v));
-        lower_[j] = std::min(lower_[j], q);
-        upper_[j] = std::max(upper_[j], q);
       }
     }
   }
@@ -74,12 +68,10 @@ class Reach {
   Eigen::Index laws() const { return greatest_.size(); }
   /// The greatest velocity.
   double velocity(Eigen::Index j) const { return std::max(greatest_[j], kLeast); }
-  /// From the least to the greatest position.
-  double range(Eigen::Index j) const { return std::max(upper_[j] - lower_[j], kLeast); }
 
  private:
   static constexpr double kLeast = 1e-6;  // of a joint that stands still
-  Eigen::VectorXd greatest_, lower_, upper_;
+  Eigen::VectorXd greatest_;
 };
 
 /// The curved unknowns of a law and, if it is a joint's, of its drive gain.
@@ -87,7 +79,7 @@ inline std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Eigen::I
                                           const Reach& reach) {
   using namespace own_column;
   const FrictionPrior& prior = options.friction;
-  const double greatest = reach.velocity(law), range = reach.range(law);
+  const double greatest = reach.velocity(law);
   const double factor = std::log(prior.width_factor);
   const double shift = (options.shift ? prior.shift : kHeld) * greatest;
   const double most_shift = options.shift ? prior.most_shift * greatest : 0.0;
@@ -100,8 +92,8 @@ inline std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Eigen::I
                       prior.stribeck_velocity * greatest, factor, 0, greatest});
   }
   if (options.terms >= FrictionTerms::kMemory) {
-    curved.push_back({kDistance, &StepFriction::distance, true, prior.distance * range, factor,
-                      prior.least_distance * range, prior.most_distance * range});
+    curved.push_back({kDistance, &StepFriction::distance, true, prior.distance, factor,
+                      prior.least_distance, prior.most_distance});
   }
   if (options.drive_gains.size() > law) {
     curved.push_back({ownColumns(options.terms), nullptr, true, options.drive_gains[law],

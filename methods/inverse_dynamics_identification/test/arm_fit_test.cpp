@@ -7,6 +7,7 @@
 #include <chain_dynamics/error.hpp>
 #include <chain_dynamics/fast_model.hpp>
 #include <chain_dynamics/friction.hpp>
+#include <chain_dynamics/friction_state.hpp>
 #include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/robot_description.hpp>
@@ -48,6 +49,38 @@ TEST(ArmFitter, FindsAKnownRobotWithItsFriction) {
       EXPECT_NEAR(fit.friction[j].shift, laws[j].shift, 0.01);
       EXPECT_NEAR(fit.friction[j].width, laws[j].width, 0.25 * laws[j].width + 0.01);
     }
+  }
+}
+
+TEST(ArmFitter, FindsTheDistanceOverWhichFrictionTurnsRound) {
+  const double distances[] = {0.0006, 0.003, 0.02};  // of a gear, however far its joint moves
+  Model model(threeJointArm());
+  for (const double distance : distances) {
+    StepFriction law{0.5, 1, 0.01};
+    law.fm = 2;
+    law.distance = distance;
+    model.friction.emplace_back(law);
+  }
+  const Eigen::Index count = 6000;
+  Motion motion = randomMotion(model.chain, count, 1);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double t = 0.005 * static_cast<double>(k);
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      const double v = 0.7 + 0.2 * static_cast<double>(j), w = 8 * v;
+      motion.q(j, k) = std::sin(v * t) + 0.02 * std::sin(w * t);
+      motion.qd(j, k) = v * std::cos(v * t) + 0.02 * w * std::cos(w * t);
+      motion.qdd(j, k) = -v * v * std::sin(v * t) - 0.02 * w * w * std::sin(w * t);
+    }
+  }
+  FastModel(model).torquesBatch(motion.q, motion.qd, motion.qdd, motion.tau);
+  chain_dynamics::FrictionState(model).addAlong(motion.q, motion.qd, motion.tau);
+  motion.tau += noise(3, count, kNoise, 2);
+  ArmFitOptions options;
+  options.terms = FrictionTerms::kMemory;
+  const ArmFit fit = ArmFitter(threeJointArm(0.6)).fit({samplesOf(motion)}, options);
+  for (std::size_t j = 0; j < 3; ++j) {
+    EXPECT_NEAR(fit.friction[j].distance, distances[j], 0.1 * distances[j]) << j;
+    EXPECT_NEAR(fit.friction[j].fm + fit.friction[j].fs, 2, 0.1) << j;
   }
 }
 

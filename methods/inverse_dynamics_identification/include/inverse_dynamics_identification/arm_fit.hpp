@@ -74,7 +74,8 @@ class ArmData {
   std::vector<Block> blocks_;
 };
 
-/// Prior of friction. Velocities are shares of a joint's greatest, distances of its range of motion.
+/// Prior of friction. Velocities are shares of a joint's greatest; distances are in rad (prismatic m): a
+/// gear's is the same however far its joint moves.
 struct FrictionPrior {
   double width = 0.05;         ///< of the step
   double width_factor = 2.7;   ///< by which it may well differ
@@ -85,9 +86,9 @@ struct FrictionPrior {
   double load = 0.1;               ///< standard deviation of fl
   double most_load = 0.5;          ///< fl is below
   double stribeck_velocity = 0.1;  ///< where the step has fallen
-  double distance = 0.02;          ///< of presliding
-  double least_distance = 0.0005;
-  double most_distance = 0.2;
+  double distance = 0.005;         ///< of presliding
+  double least_distance = 1e-4;    ///< the play; shorter ones can't be told apart
+  double most_distance = 0.5;      ///< longer ones are springs
 };
 
 /// Prior of a drive gain: a factor by which it may differ from its starting value.
