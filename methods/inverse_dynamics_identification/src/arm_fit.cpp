@@ -148,9 +148,9 @@ class Rounds {
       if (options_.terms < FrictionTerms::kMemory) law.fm = 0;
       if (!options_.shift) law.shift = 0;
     }
-    for (Index j = 0; j < laws(); ++j) {  // of a start without memory
-      double& distance = tried.friction[at(j)].distance;
-      if (distance == 0) distance = options_.friction.distance;
+    const bool is_new = options_.terms >= FrictionTerms::kMemory && !remembers(tried);
+    for (StepFriction& law : tried.friction) {
+      if (law.distance == 0) law.distance = options_.friction.distance;
     }
     int pass = 1;
     if (start != nullptr) {
@@ -160,6 +160,7 @@ class Rounds {
       tried = with(tried, last_);
       ++pass;
     }
+    if (is_new) tried = withDistances(tried, gram_at);
     ArmFit best;
     best.cost = kInfinity;
     std::optional<RegressorGram> gram_of_best;
@@ -197,9 +198,9 @@ class Rounds {
   }
 
  private:
-  static constexpr double kGain = 0.3;     // of the cost, that is worth another pass
+  static constexpr double kGain = 0.3;            // of the cost, that is worth another pass
   static constexpr double kStepTolerance = 1e-3;  // of the cost
-  static constexpr int kMostRejected = 3;  // steps in turn
+  static constexpr int kMostRejected = 3;         // steps in turn
   static constexpr double kFirstStep = 0.3, kLongestStep = 0.6;  // units
   static constexpr double kStopped = 1e-3;                       // of a unit
 
@@ -219,6 +220,30 @@ class Rounds {
     }
     for (Index c = rows_.springs(); c < rows_.columns(); ++c) columns.push_back(c);
     return columns;
+  }
+
+  static bool remembers(const ArmFit& fit) {
+    return std::any_of(fit.friction.begin(), fit.friction.end(),
+                       [](const StepFriction& law) { return law.distance > 0; });
+  }
+
+  /// With the distance of each law, of a few, that leaves its joint the least errors: steps from afar end in
+  /// a minimum nearby.
+  ArmFit withDistances(const ArmFit& fit, const GramAt& gram_at) const {
+    ArmFit best = fit, tried = fit;
+    VectorXd least = VectorXd::Constant(laws(), kInfinity);
+    for (const double factor : {1.0 / 9, 1.0 / 3, 1.0, 3.0, 9.0, 27.0}) {
+      const double distance = factor * options_.friction.distance;
+      for (StepFriction& law : tried.friction) law.distance = distance;
+      const Fit found = linearFit(tried, gram_at(tried));
+      for (Index k = 0; k < laws(); ++k) {
+        const double noise = found.noise[rows_.home(k).joint];
+        if (noise >= least[k]) continue;
+        least[k] = noise;
+        best.friction[at(k)].distance = distance;
+      }
+    }
+    return best;
   }
 
   ArmFit beginning() const {
