@@ -232,7 +232,7 @@ class Rounds {
   ArmFit withDistances(const ArmFit& fit, const GramAt& gram_at) const {
     ArmFit best = fit, tried = fit;
     VectorXd least = VectorXd::Constant(laws(), kInfinity);
-    for (const double factor : {1.0 / 9, 1.0 / 3, 1.0, 3.0, 9.0, 27.0}) {
+    for (const double factor : {1.0 / 3, 1.0, 3.0}) {
       const double distance = factor * options_.friction.distance;
       for (StepFriction& law : tried.friction) law.distance = distance;
       const Fit found = linearFit(tried, gram_at(tried));

@@ -49,7 +49,7 @@ _DELAY_STEP = 0.008  # s, at least
 _MOST_DELAY_STEPS = 8
 _VERTICES = 2
 _LEAST_DELAY = 1e-4  # s; a shorter one counts as none
-_BASE = "load"  # the law that delays are looked for with, and that fits of richer ones begin with
+_BASE = "load"  # the law that delays are looked for with
 _MEMORY = "memory"  # the law whose friction lags behind
 
 
@@ -98,7 +98,7 @@ def choose(
     laws = [usual[_simplest(usual, noise)[0]]]
     strength = laws[0].prior_strength
     for law in others:
-        fit = fits[law] = parts[law].fit(law, strength, fits.get(_BASE, fit))
+        fit = fits[law] = parts[law].fit(law, strength, fit)
         laws.append(parts[law].left_out(law, strength, fit))
     one = laws[_simplest(laws, noise)[0]]
     at = laws.index(one)
