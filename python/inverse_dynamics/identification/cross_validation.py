@@ -49,7 +49,7 @@ _DELAY_STEP = 0.008  # s, at least
 _MOST_DELAY_STEPS = 8
 _VERTICES = 2
 _LEAST_DELAY = 1e-4  # s; a shorter one counts as none
-_BASE = "load"  # the law that delays are looked for with
+_DELAY_LAW = "load"  # the law that delays are looked for with
 _MEMORY = "memory"  # the law whose friction lags behind
 
 
@@ -59,7 +59,7 @@ class Chosen:
 
     law: str
     prior_strength: float
-    delay: float
+    delay: float  # s
     blocks: Sequence[Block]  # what the fit is to: samples in motion, the delay made up for
     fit: ArmFit
     band: Floats  # (n,) half the width of the 95 % band
@@ -84,13 +84,14 @@ def choose(
 ) -> Chosen:
     """The fit to all blocks, chosen by leaving out each part in turn.
 
-    Choices use equidistant samples of long recordings; the fit uses all. delays: of each law [s], if they are known.
+    Choices use equidistant samples of long recordings; the fit uses all. delays: of each law [s], found on more blocks:
+    they are made up for, and what these blocks alone find near is stated.
     """
     blocks = moving(blocks)
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
     recorded = _Parts(fitter, blocks, 0.0, step)
-    delays = delays or _delays(fitter, blocks, recorded, step)
-    parts = _parts_of(fitter, blocks, recorded, step, delays)
+    of_laws = delays or _delays(fitter, blocks, recorded, step)
+    parts = _parts_of(fitter, blocks, recorded, step, of_laws)
     simplest, *others = LAWS
     fit = parts[simplest].fit(simplest, STRENGTHS[1], None)
     fits, noise = {simplest: fit}, fit.noise
@@ -107,6 +108,9 @@ def choose(
     alternatives = [*laws[:at], *usual, *laws[at + 1 :]]
     chosen, choices = _simplest(alternatives, noise)
     best = alternatives[chosen]
+    delay = best.delay
+    if delays and delay != 0:
+        delay, _ = _delay(fitter, blocks, step, best.law, fits[best.law], delay)
     blocks = [block.later(best.delay) for block in blocks]
     data = parts[best.law].data if step == 1 else data_of(fitter, blocks)
     options = ArmFitOptions(best.law, prior_strength=best.prior_strength)
@@ -116,13 +120,13 @@ def choose(
     return Chosen(
         law=best.law,
         prior_strength=best.prior_strength,
-        delay=best.delay,
+        delay=delay,
         blocks=blocks,
         fit=fit,
         band=np.quantile(errors, _BAND, axis=0),
         noise=noise_in_motion(errors, qd, fit.friction[: qd.shape[1]]),
         choices=choices,
-        delays=delays,
+        delays=of_laws,
     )
 
 
@@ -198,8 +202,8 @@ def _delays(
     Friction that lags behind a reversal looks like a delay to a law without memory; a law with memory may take some of
     its own lag back. So the lesser one of both delays is that of the law with memory.
     """
-    delay, start = _delay(fitter, blocks, step, _BASE, None)
-    plain = _helpful(fitter, blocks, recorded, step, _BASE, delay, start)
+    delay, start = _delay(fitter, blocks, step, _DELAY_LAW, None)
+    plain = _helpful(fitter, blocks, recorded, step, _DELAY_LAW, delay, start)
     delays = dict.fromkeys(LAWS, plain)
     if plain != 0:
         delay, start = _delay(fitter, blocks, step, _MEMORY, start)
@@ -228,18 +232,25 @@ def _helpful(
 
 
 def _delay(
-    fitter: ArmFitter, blocks: Sequence[Block], thinned: int, law: str, start: ArmFit | None
+    fitter: ArmFitter,
+    blocks: Sequence[Block],
+    thinned: int,
+    law: str,
+    start: ArmFit | None,
+    about: float | None = None,
 ) -> tuple[float, ArmFit]:
     """By how much the torques are later than the states [s], and a fit with nearly that delay; zero: there is none.
 
-    The vertex of the parabola through the noise at three delays, gone to twice. Far from the least noise, where there
-    is none, the way leads downhill.
+    The vertex of the parabola through the noise at three delays, gone to twice, or once where it is about known. Far
+    from the least noise, where there is none, the way leads downhill.
     """
     periods = np.concatenate([np.diff(block.instants[block.used]) for block in blocks])
     step = max(float(np.median(periods[periods > 0])), _DELAY_STEP)
     settled = ArmFitOptions(law, prior_strength=STRENGTHS[1])
     near = ArmFitOptions(law, prior_strength=STRENGTHS[1], most_passes=_PASSES)
     center, vertices = 0.0, 0
+    if about is not None:
+        center, vertices, step = about, _VERTICES - 1, 0.5 * step
 
     def at(delay: float, options: ArmFitOptions, start: ArmFit | None) -> ArmFit:
         samples = [block.later(delay, thinned) for block in blocks]

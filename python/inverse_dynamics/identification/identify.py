@@ -382,7 +382,7 @@ def _held_out(
 ) -> list[HeldOutBlock]:
     """The blocks of each group, predicted by models fitted to, and chosen on, the others.
 
-    delays: of each law [s], found on all blocks: those of the recording's clock, one number.
+    delays: of each law [s], found on all blocks, as they belong to the recording.
     """
     found = []
     present = solvers.get("present")
