@@ -13,7 +13,7 @@ from inverse_dynamics.outputs.plain import plain
 from inverse_dynamics.show.tables import IN_BAND, ReportTable, of_joints
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from inverse_dynamics.identification.hold_out import HoldOut
     from inverse_dynamics.identification.result import Choice, DriveGain, Identification, Level
@@ -70,7 +70,8 @@ def identification_lines(found: Identification) -> Iterator[Line]:
 
 def choices_told(found: Identification) -> list[tuple[str, str]]:
     """What was chosen and why: name and sentence."""
-    law, prior = (_best_by(found.choices, name) for name in ("law", "prior_strength"))
+    law = _best_of_laws(found.choices)
+    prior = {c.prior_strength: c for c in found.choices if c.law == found.law}
     told = [("drive gains", ", ".join(map(_gain_told, found.drive_gains)))]
     return [
         *(told if found.drive_gains else []),
@@ -112,17 +113,16 @@ def _gain_told(gain: DriveGain) -> str:
     return f"{gain.joint} {gain.value:.4g} +- {gain.half_width:.2g}{stated}"
 
 
-def _best_by(choices: Iterable[Choice], name: str) -> dict[object, Choice]:
-    """The best alternative of each value that was tried."""
-    best: dict[object, Choice] = {}
+def _best_of_laws(choices: Iterable[Choice]) -> dict[str, Choice]:
+    """The best alternative of each law that was tried."""
+    best: dict[str, Choice] = {}
     for choice in choices:
-        value = getattr(choice, name)
-        if value not in best or choice.error < best[value].error or choice.chosen:
-            best[value] = choice
+        if choice.law not in best or choice.error < best[choice.law].error or choice.chosen:
+            best[choice.law] = choice
     return best
 
 
-def _compared(best: dict[object, Choice]) -> str:
+def _compared(best: Mapping[str, Choice] | Mapping[float, Choice]) -> str:
     """Errors of the alternatives."""
     if len(best) < 2:
         return ""
