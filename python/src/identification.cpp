@@ -6,6 +6,7 @@
 #include <chain_dynamics/error.hpp>
 #include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/owned.hpp>
+#include <chain_dynamics/text.hpp>
 #include <chain_dynamics/urdf.hpp>
 #include <cstddef>
 #include <inverse_dynamics_identification/arm_fit.hpp>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chain_dynamics/error.hpp>
+#include <chain_dynamics/friction.hpp>
 #include <chain_dynamics/mechanism.hpp>
 #include <chain_dynamics/model.hpp>
 #include <chain_dynamics/regressor_gram.hpp>
