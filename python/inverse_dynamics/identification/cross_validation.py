@@ -59,8 +59,8 @@ class Chosen:
 
     law: str
     prior_strength: float
-    delay: float  # s
-    blocks: Sequence[Block]  # what the fit is to: samples in motion, the delay made up for
+    delay: float  # s; what the blocks alone find
+    blocks: Sequence[Block]  # what the fit is to: samples in motion, its delay made up for
     fit: ArmFit
     band: Floats  # (n,) half the width of the 95 % band
     noise: Floats  # (n,) standard deviation of held-out torques of a joint while it moves
@@ -241,8 +241,8 @@ def _delay(
 ) -> tuple[float, ArmFit]:
     """By how much the torques are later than the states [s], and a fit with nearly that delay; zero: there is none.
 
-    The vertex of the parabola through the noise at three delays, gone to twice, or once where it is about known. Far
-    from the least noise, where there is none, the way leads downhill.
+    The vertex of the parabola through the noise at three delays, gone to twice, or once from a delay `about` that is
+    nearly right. Far from the least noise, where there is none, the way leads downhill.
     """
     periods = np.concatenate([np.diff(block.instants[block.used]) for block in blocks])
     step = max(float(np.median(periods[periods > 0])), _DELAY_STEP)
